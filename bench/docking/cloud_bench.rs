@@ -24,7 +24,7 @@ fn main() {
         let (scene, preparing) = timed(|| clouds::scene_of(&problem));
         let plan = || planner.plan(&problem.footprint, &scene, problem.start, problem.goal);
         let runs: Vec<_> = (0..TIMES).map(|_| timed(plan)).collect();
-        let least = runs.iter().map(|(_, ms)| *ms).fold(f64::INFINITY, f64::min);
+        let min = runs.iter().map(|(_, ms)| *ms).fold(f64::INFINITY, f64::min);
         let outcome = match &runs[0].0 {
             Ok(DockingPlan::Found(found)) => format!(
                 "{} motions, {:.2} s, bound {:.2} s, margin {:.1} mm",
@@ -39,9 +39,9 @@ fn main() {
             ),
             Err(refusal) => refusal.to_string(),
         };
-        println!("{least:7.1} ms, scene {preparing:5.1} ms: {}: {outcome}", problem.name);
-        if least > worst.0 {
-            worst = (least, problem.name);
+        println!("{min:7.1} ms, scene {preparing:5.1} ms: {}: {outcome}", problem.name);
+        if min > worst.0 {
+            worst = (min, problem.name);
         }
     }
     println!("worst: {:.1} ms, {}", worst.0, worst.1);

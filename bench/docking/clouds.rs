@@ -58,13 +58,13 @@ pub fn scenes() -> Vec<Problem> {
         }),
         of("everywhere", (start, goal), &mut rng, anywhere),
         of("everywhere but along the way", (start, goal), &mut rng, {
-            let way = Problem { start, goal, ..empty("way") };
+            let distance = Problem { start, goal, ..empty("way") };
             move |rng: &mut ChaCha8Rng| loop {
                 let p = anywhere(rng);
                 let on_way = (0..=20).any(|i| {
                     let t = f64::from(i) / 20.0;
                     let at = |a: f64, b: f64| a + (b - a) * t;
-                    let (a, b) = (way.start, way.goal);
+                    let (a, b) = (distance.start, distance.goal);
                     let seen =
                         Pose2::new(at(a.x, b.x), at(a.y, b.y), at(a.theta, b.theta)).inverse().transform(p);
                     seen.x.abs() < 0.5 && seen.y.abs() < 0.26

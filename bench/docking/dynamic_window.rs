@@ -54,7 +54,7 @@ impl DynamicWindow<'_> {
 
     /// The usual sum: distance left, heading to the goal's place, nearness of obstacles; on the place the heading alone.
     fn cost(&self, pose: &Pose2, twist: Twist2) -> f64 {
-        let (mut least, mut clearance) = (f64::INFINITY, 0.3_f64);
+        let (mut min, mut clearance) = (f64::INFINITY, 0.3_f64);
         let (brake, turn_brake) = (self.limits.acceleration, self.limits.angular_acceleration);
         let stop = (twist.v.abs() / brake).max(twist.omega.abs() / turn_brake);
         let horizon = HORIZON.max(stop);
@@ -69,7 +69,7 @@ impl DynamicWindow<'_> {
             }
             clearance = clearance
                 .min(self.scene.clearance(&self.problem.footprint, &at, 0.1).map_or(0.1, |(d, _)| d));
-            least = least.min(self.left(&at) + 0.02 * time);
+            min = min.min(self.left(&at) + 0.02 * time);
         }
         // Too fast to stop at the goal is as bad as passing it.
         let over = (twist.v * twist.v / (2.0 * brake)
@@ -78,7 +78,7 @@ impl DynamicWindow<'_> {
         let spin = (twist.omega * twist.omega / (2.0 * turn_brake)
             - wrap_angle(self.problem.goal.theta - pose.theta).abs())
         .max(0.0);
-        least + 0.02 * (0.1 - clearance).max(0.0) + 2.0 * over + if self.turning { spin } else { 0.0 }
+        min + 0.02 * (0.1 - clearance).max(0.0) + 2.0 * over + if self.turning { spin } else { 0.0 }
     }
 
     fn left(&self, at: &Pose2) -> f64 {

@@ -22,7 +22,7 @@ pub fn time(problem: &Problem, path: &[PathPiece]) -> Result<f64, String> {
         |pose: &Pose2| scene.clearance(&problem.footprint, pose, 1e-3).is_some_and(|(d, _)| d <= 0.0);
     let mut pose = problem.start;
     for (i, piece) in path.iter().enumerate() {
-        let samples = ((piece.way.abs() + arm * piece.turn.abs()) / STEP).ceil().max(1.0);
+        let samples = ((piece.distance.abs() + arm * piece.turn.abs()) / STEP).ceil().max(1.0);
         for k in 1..=samples as usize {
             let at = piece.after(&pose, k as f64 / samples);
             if touches(&at) {

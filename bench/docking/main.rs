@@ -141,7 +141,9 @@ fn by_hybrid(problems: &[Problem]) -> Row {
         let limits = MotionLimits::default();
         let (path, ms) = clock::timed(|| hybrid::plan(problem, &scene, &limits, KEPT));
         let path = path.map(|path| {
-            path.iter().map(|&(curvature, way)| PathPiece { way, turn: curvature * way }).collect()
+            path.iter()
+                .map(|&(curvature, distance)| PathPiece { distance, turn: curvature * distance })
+                .collect()
         });
         row.planning_ms.push(ms);
         row.note(problem, path);
@@ -149,14 +151,14 @@ fn by_hybrid(problems: &[Problem]) -> Row {
     row
 }
 
-/// Solvable problems with noise and lag: the first `most` by the positioner, the first `few` by the others.
-fn closed_loop(problems: &[&Problem], most: usize, few: usize) {
+/// Solvable problems with noise and lag: the first `max` by the positioner, the first `few` by the others.
+fn closed_loop(problems: &[&Problem], max: usize, few: usize) {
     let paper = DockingConfig { method: Method::Hong24, ..DockingConfig::default() };
     let run = |docking: &DockingConfig, problem: &Problem, i: usize| world::run(problem, docking, i as u64);
     let scene = |problem: &Problem| problem.scene().expect("valid");
     let mut tracks = vec![Track::new("trundle, optimal"), Track::new("[Hong24]")];
     tracks.extend([Track::new("dynamic window"), Track::new("hybrid A*, Reeds-Shepp")]);
-    for (i, &problem) in problems.iter().enumerate().take(most) {
+    for (i, &problem) in problems.iter().enumerate().take(max) {
         tracks[0].note(problem, run(&DockingConfig::default(), problem, i));
         if i < few {
             tracks[1].note(problem, run(&paper, problem, i));

@@ -113,21 +113,21 @@ pub fn by_hybrid(problem: &Problem, scene: &ObstacleScene, seed: u64) -> Run {
 fn follow(race: &mut Race<'_>, mut from: Pose2, pieces: &[PathPiece]) {
     let limits = MotionLimits::default();
     let mut last = 0.0;
-    for &(curvature, way) in pieces {
-        if last * way < 0.0 {
+    for &(curvature, distance) in pieces {
+        if last * distance < 0.0 {
             for _ in 0..(limits.switch_time / DT) as usize {
                 race.advance(Twist2::ZERO);
             }
         }
-        last = way;
-        let total = limits.drive_time(way);
+        last = distance;
+        let total = limits.drive_time(distance);
         for i in 0..=(total / DT) as usize {
-            let (done, speed) = limits.drive_at(way, i as f64 * DT);
+            let (done, speed) = limits.drive_at(distance, i as f64 * DT);
             let error = race.world.measured().inverse() * roll(&from, curvature, done);
             // Kanayama's law, gently: the pose is noisy.
             let omega = speed * curvature + 8.0 * speed * error.y + 1.5 * error.theta;
             race.advance(Twist2::new(speed + error.x, omega));
         }
-        from = roll(&from, curvature, way);
+        from = roll(&from, curvature, distance);
     }
 }

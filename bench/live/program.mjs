@@ -12,7 +12,7 @@ export async function startCommand(trundle, args) {
     const read = (chunk) => {
       text += chunk;
       const drive = /Live page: (\S+)/.exec(text)?.[1];
-      const view = /to look only: (\S+)/.exec(text)?.[1];
+      const view = /to view only: (\S+)/.exec(text)?.[1];
       if (view) resolve({ drive, view });
     };
     child.stdout.on("data", read);

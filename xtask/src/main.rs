@@ -31,11 +31,11 @@ use std::process::ExitCode;
 #[command(name = "cargo xtask", arg_required_else_help = true)]
 struct Cli {
     #[command(subcommand)]
-    chore: Chore,
+    command: XtaskCommand,
 }
 
 #[derive(Debug, Subcommand)]
-enum Chore {
+enum XtaskCommand {
     /// Everything that must hold before a change is merged, in order, until the first failure.
     Ci {
         /// Leave out `cargo test --workspace`: it ran just before.
@@ -142,30 +142,30 @@ enum Chore {
 
 fn main() -> ExitCode {
     let root = workspace::root();
-    let verdict = match Cli::parse().chore {
-        Chore::Ci { tested } => ci::run(&root, tested),
-        Chore::Tidy { shrink, grow } if shrink || grow => tidy::shrink(&root, grow),
-        Chore::Tidy { .. } => tidy::run(&root),
-        Chore::Book => book::run(&root),
-        Chore::BookLinks { question } => book::repository_links::run(&question),
-        Chore::Golden { update, only, profile } => {
+    let verdict = match Cli::parse().command {
+        XtaskCommand::Ci { tested } => ci::run(&root, tested),
+        XtaskCommand::Tidy { shrink, grow } if shrink || grow => tidy::shrink(&root, grow),
+        XtaskCommand::Tidy { .. } => tidy::run(&root),
+        XtaskCommand::Book => book::run(&root),
+        XtaskCommand::BookLinks { question } => book::repository_links::run(&question),
+        XtaskCommand::Golden { update, only, profile } => {
             golden::run(&root, &golden::Options { update, only, profile })
         }
-        Chore::Dist => dist::run(&root, None),
-        Chore::Deb { arm64 } => dist::deb::run(&root, arm64),
-        Chore::Reproduce => dist::reproduce::run(&root),
-        Chore::Packages { every_feature } => packages::run(&root, every_feature),
-        Chore::Results { measure, printed } => results::run(&root, &measure, printed.as_deref()),
-        Chore::Gallery { measure } => gallery::run(&root, measure.as_deref()),
-        Chore::Settings => settings::run(&root, false),
-        Chore::States => states::run(&root, false),
-        Chore::RosInterfaces => ros_interfaces::run(&root, false),
-        Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
-        Chore::Fuzz(options) => fuzz::run(&root, &options),
-        Chore::FaultScenarios => fault_scenarios::run(&root),
-        Chore::Aarch64 => aarch64::run(&root),
-        Chore::RobotMemory { minutes } => robot_memory::run(&root, minutes),
-        Chore::DemoSeeds { seeds, first, explore } => {
+        XtaskCommand::Dist => dist::run(&root, None),
+        XtaskCommand::Deb { arm64 } => dist::deb::run(&root, arm64),
+        XtaskCommand::Reproduce => dist::reproduce::run(&root),
+        XtaskCommand::Packages { every_feature } => packages::run(&root, every_feature),
+        XtaskCommand::Results { measure, printed } => results::run(&root, &measure, printed.as_deref()),
+        XtaskCommand::Gallery { measure } => gallery::run(&root, measure.as_deref()),
+        XtaskCommand::Settings => settings::run(&root, false),
+        XtaskCommand::States => states::run(&root, false),
+        XtaskCommand::RosInterfaces => ros_interfaces::run(&root, false),
+        XtaskCommand::ReplayCheck { seed } => replay_check::run(&root, seed),
+        XtaskCommand::Fuzz(options) => fuzz::run(&root, &options),
+        XtaskCommand::FaultScenarios => fault_scenarios::run(&root),
+        XtaskCommand::Aarch64 => aarch64::run(&root),
+        XtaskCommand::RobotMemory { minutes } => robot_memory::run(&root, minutes),
+        XtaskCommand::DemoSeeds { seeds, first, explore } => {
             seeds::run(&root, first..first.saturating_add(seeds), explore)
         }
     };

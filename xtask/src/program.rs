@@ -60,7 +60,7 @@ pub fn cargo_output(root: &Path, args: &[&str]) -> Result<String, String> {
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// What cargo knows of the workspace: its packages and folders.
+/// Cargo's metadata of the workspace: packages and folders.
 pub fn metadata(root: &Path) -> Result<serde_json::Value, String> {
     let text = cargo_output(root, &["metadata", "--format-version=1", "--no-deps", "--offline"])?;
     serde_json::from_str(&text).map_err(|e| format!("cargo metadata: {e}"))

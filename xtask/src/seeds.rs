@@ -81,7 +81,7 @@ fn table(runs: &[Run]) -> Vec<String> {
         }
         rows.push(cells);
     }
-    rows[0].extend(["mean".into(), "most".into()]);
+    rows[0].extend(["mean".into(), "max".into()]);
     align(&rows)
 }
 

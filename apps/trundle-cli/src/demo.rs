@@ -73,7 +73,7 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
     if args.state.resume.is_none() {
         checkpoint.map_or(Ok(()), keep_aside)?;
     }
-    let (page, front_end) = args.live.beside(setup, progress, None, true)?;
+    let (page, front_end) = args.live.front_ends(setup, progress, None, true)?;
     if setup.real_time {
         let start = |events, place| SimulatedRealTimeBody::start(body, events, place);
         let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), front_end);

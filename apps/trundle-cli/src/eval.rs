@@ -7,7 +7,7 @@ pub use args::EvalArgs;
 use crate::outcome::Outcome;
 use crate::output_args::OutputDirArg;
 use crate::{console, logging};
-use args::{MapsArgs, RelationsArgs, TrajectoryArgs, Which};
+use args::{EvalObject, MapsArgs, RelationsArgs, TrajectoryArgs};
 use trundle::app::AppError;
 use trundle::app::evaluation::{
     MapEvaluation, RelationEvaluation, RelationReference, TrajectoryEvaluation, write_evaluation,
@@ -19,9 +19,9 @@ use trundle::io::Summary;
 /// `trundle eval ...`.
 pub fn run(args: &EvalArgs) -> Result<Outcome, AppError> {
     match &args.which {
-        Which::Trajectory(args) => trajectory(args)?,
-        Which::Relations(args) => relations(args)?,
-        Which::Map(args) => map(args)?,
+        EvalObject::Trajectory(args) => trajectory(args)?,
+        EvalObject::Relations(args) => relations(args)?,
+        EvalObject::Map(args) => map(args)?,
     }
     Ok(Outcome::Reached)
 }

@@ -5,7 +5,7 @@ mod shards;
 
 pub use args::ExperimentArgs;
 
-use self::args::{BarnArgs, MrpbArgs, RealTimeArgs, RunsArgs, Which};
+use self::args::{BarnArgs, Experiment, MrpbArgs, RealTimeArgs, RunsArgs};
 use crate::common_args::Common;
 use crate::outcome::Outcome;
 use crate::{console, logging};
@@ -23,7 +23,7 @@ use trundle::live::LivePage;
 /// Runs the requested experiment, or merges its shards.
 pub fn run(args: &ExperimentArgs) -> Result<Outcome, AppError> {
     match &args.which {
-        Which::Merge(merge) => {
+        Experiment::Merge(merge) => {
             let kept = KeptRuns::read(&merge.folders)?;
             let which = shards::experiment_of(kept.manifest(), merge)?;
             run_from(&which, &RunOrigin::Kept(Arc::new(kept)))
@@ -32,23 +32,23 @@ pub fn run(args: &ExperimentArgs) -> Result<Outcome, AppError> {
     }
 }
 
-fn run_from(which: &Which, origin: &RunOrigin) -> Result<Outcome, AppError> {
+fn run_from(which: &Experiment, origin: &RunOrigin) -> Result<Outcome, AppError> {
     match which {
-        Which::Poses(args) if args.wires => runs(&args.runs, "poses", origin, poses::run_over_wires),
-        Which::Poses(args) => runs(&args.runs, "poses", origin, poses::run),
-        Which::Obstacles(args) => runs(args, "obstacles", origin, missions::run_obstacles),
-        Which::House(args) => runs(&args.runs, "house", origin, |request, context| {
+        Experiment::Poses(args) if args.wires => runs(&args.runs, "poses", origin, poses::run_over_wires),
+        Experiment::Poses(args) => runs(&args.runs, "poses", origin, poses::run),
+        Experiment::Obstacles(args) => runs(args, "obstacles", origin, missions::run_obstacles),
+        Experiment::House(args) => runs(&args.runs, "house", origin, |request, context| {
             missions::run_house(request, &args.mesh, context)
         }),
-        Which::Faults(args) => runs(args, "faults", origin, fault_scenarios::run),
-        Which::People(args) => runs(args, "people", origin, people::run),
-        Which::LookAlikes(args) => runs(args, "look-alikes", origin, look_alikes::run),
-        Which::DockingStation(args) => runs(args, "docking-station", origin, docking_station::run),
-        Which::Barn(args) => run_barn(args, origin),
-        Which::Mrpb(args) => run_mrpb(args, origin),
-        Which::RealTime(args) => run_real_time(args, origin),
-        Which::Corridor(args) => in_folder(&args.out, &args.common, None, origin, |_, _| corridor::run()),
-        Which::Merge(_) => {
+        Experiment::Faults(args) => runs(args, "faults", origin, fault_scenarios::run),
+        Experiment::People(args) => runs(args, "people", origin, people::run),
+        Experiment::LookAlikes(args) => runs(args, "look-alikes", origin, look_alikes::run),
+        Experiment::DockingStation(args) => runs(args, "docking-station", origin, docking_station::run),
+        Experiment::Barn(args) => run_barn(args, origin),
+        Experiment::Mrpb(args) => run_mrpb(args, origin),
+        Experiment::RealTime(args) => run_real_time(args, origin),
+        Experiment::Corridor(a) => in_folder(&a.out, &a.common, None, origin, |_, _| corridor::run()),
+        Experiment::Merge(_) => {
             Err(AppError::Input("a merge of merges, expected the shards of an experiment".to_owned()))
         }
     }

@@ -33,7 +33,7 @@ pub struct LiveArgs {
 
 /// Front ends of a run; a drop ends them.
 #[derive(Default)]
-pub struct Beside {
+pub struct FrontEnds {
     _page: Option<LivePage>,
     #[cfg(feature = "mqtt")]
     _fleet: Option<trundle::fleet::FleetLink>,
@@ -56,13 +56,13 @@ impl LiveArgs {
 
     /// The requested page and broker link of a run, and the run's companions. `link` is the link of another front end. A run without an
     /// operator accepts no commands.
-    pub fn beside(
+    pub fn front_ends(
         &self,
         setup: &RunSetup,
         progress: Progress,
         link: Option<OperatorLink>,
         is_steered: bool,
-    ) -> Result<(Beside, FrontEnd), AppError> {
+    ) -> Result<(FrontEnds, FrontEnd), AppError> {
         if let (Some(file), false) = (&self.zones, is_steered) {
             let problem = "a replay has the zones of its recording: leave --zones out";
             return Err(AppError::Input(format!("--zones {}: {problem}", file.display())));
@@ -72,15 +72,15 @@ impl LiveArgs {
             return Err(AppError::Input(format!("--maps {}: {problem}", folder.display())));
         }
         if !self.is_operated() {
-            return Ok((Beside::default(), FrontEnd { progress, operator: link }));
+            return Ok((FrontEnds::default(), FrontEnd { progress, operator: link }));
         }
         let link = link.unwrap_or_else(|| operator_link().1);
-        let beside = Beside {
+        let front_ends = FrontEnds {
             _page: self.page(setup, &link, is_steered)?,
             #[cfg(feature = "mqtt")]
             _fleet: self.mqtt.join(setup, &link, is_steered)?,
         };
-        Ok((beside, FrontEnd { progress, operator: Some(link) }))
+        Ok((front_ends, FrontEnd { progress, operator: Some(link) }))
     }
 
     fn page(

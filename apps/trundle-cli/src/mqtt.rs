@@ -33,7 +33,7 @@ impl MqttArgs {
     ) -> Result<Option<FleetLink>, AppError> {
         let Some(broker) = self.mqtt.clone() else { return Ok(None) };
         let (file, name) = (self.mqtt_password_file.as_deref(), self.mqtt_name.as_ref());
-        let fleet = FleetLink::beside(setup, link, is_steered, broker, file, name, &self.mqtt_map)?;
+        let fleet = FleetLink::for_run(setup, link, is_steered, broker, file, name, &self.mqtt_map)?;
         crate::console::print(&fleet.announcement());
         Ok(Some(fleet))
     }

@@ -37,7 +37,7 @@ pub fn run(args: &ReplayArgs) -> Result<Outcome, AppError> {
     let folder = logging::output_folder(&args.out)?;
     let recorder = RunRecorder::to_folder(&folder)?;
     let (line, progress) = console::progress(args.common.quiet);
-    let (page, front_end) = args.live.beside(&setup, progress, None, false)?;
+    let (page, front_end) = args.live.front_ends(&setup, progress, None, false)?;
     let run = run_on_body(&setup, &mut body, recorder, RunLog::default(), front_end);
     line.finish_and_clear();
     drop(page);

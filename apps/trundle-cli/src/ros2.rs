@@ -47,7 +47,7 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     }
     let (line, progress) = console::progress(args.options.common.quiet);
     let log = if args.stays() { RunLog::brief() } else { RunLog::default() };
-    let (page, front_end) = args.live.beside(&setup, progress, Some(link), true)?;
+    let (page, front_end) = args.live.front_ends(&setup, progress, Some(link), true)?;
     let start = |events, _place| body.start(events);
     let run = run_in_real_time(&setup, start, &folder, args.options.checkpoint.as_deref(), log, front_end);
     line.finish_and_clear();

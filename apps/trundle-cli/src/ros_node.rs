@@ -34,7 +34,7 @@ impl RosArgs {
 }
 
 /// A node for `trundle run`, and the run's end of the link to the node.
-pub fn beside(
+pub fn start(
     args: &RosArgs,
     robot: &RobotConfig,
     origin: Instant,

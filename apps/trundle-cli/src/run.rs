@@ -57,12 +57,12 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
     let origin = Instant::now();
     #[cfg(feature = "ros2")]
     let (node, link) =
-        args.ros2.then(|| crate::ros_node::beside(&args.ros, &setup.robot, origin)).transpose()?.unzip();
+        args.ros2.then(|| crate::ros_node::start(&args.ros, &setup.robot, origin)).transpose()?.unzip();
     #[cfg(feature = "ros2")]
     let observer = node.as_ref().and_then(trundle::ros2::RobotNode::observer);
     #[cfg(not(feature = "ros2"))]
     let (link, observer) = (None, None);
-    let (page, front_end) = args.live.beside(setup, progress, link, true)?;
+    let (page, front_end) = args.live.front_ends(setup, progress, link, true)?;
     let start = |events, _place| {
         let body = start_hardware(&args.base, camera, setup.robot.camera, events, origin, observer)?;
         // A refused run does not change the checkpoint.

@@ -16,7 +16,7 @@ use std::path::Path;
 use trundle::app::AppError;
 use trundle::core::OccupancyGrid;
 use trundle::experiments::sim_drive::{
-    DriveRecording, KeyDriver, LiveDrive, ScriptDriver, SimDrive, SimDriver, Standing, WaypointDriver,
+    DriveRecording, KeyDriver, LiveDrive, ScriptDriver, SimDrive, SimDriver, StillDriver, WaypointDriver,
     drive_rows, drive_simulator, drive_summary, drive_verdict, recording_announcement, recording_hint,
     true_map,
 };
@@ -71,7 +71,7 @@ fn driver(args: &SimArgs) -> Result<Option<Box<dyn SimDriver>>, AppError> {
             None
         }
         (None, None) if args.is_driven_by_page() => None,
-        (None, None) => Some(Box::new(Standing::new(args.driver.duration))),
+        (None, None) => Some(Box::new(StillDriver::new(args.driver.duration))),
     })
 }
 
@@ -92,7 +92,7 @@ fn drive(
     };
     let mut driver: Box<dyn SimDriver> = match (link, grid) {
         (Some(link), Some(grid)) => Box::new(LiveDrive::start(driver, link, grid.clone())),
-        _ => driver.unwrap_or_else(|| Box::new(Standing::new(args.driver.duration))),
+        _ => driver.unwrap_or_else(|| Box::new(StillDriver::new(args.driver.duration))),
     };
     if folder.is_some() && !args.common.quiet {
         console::print(&recording_announcement(robot, args.driver.duration.or_else(|| driver.end_s())));

@@ -16,7 +16,7 @@ pub fn read_checkpoint(file: &Path) -> Result<(Checkpoint, Vec<u8>), AppError> {
     let bytes = std::fs::read(file).map_err(|error| refused(&error))?;
     let checkpoint = Checkpoint::from_bytes(&bytes).map_err(|error| refused(&error))?;
     if checkpoint.mission.left.tasks().is_empty() {
-        return Err(refused(&"nothing is left of its mission: the run that wrote it came to its end"));
+        return Err(refused(&"its mission is complete: no task is left to resume"));
     }
     Ok((checkpoint, bytes))
 }

@@ -15,7 +15,7 @@ type Newest = Arc<Mutex<Option<Arc<Checkpoint>>>>;
 /// file.
 pub struct CheckpointWriter {
     newest: Newest,
-    /// Wakes the thread, which then writes the newest checkpoint.
+    /// Starts a write of the newest checkpoint by the thread.
     wake: SyncSender<()>,
     thread: JoinHandle<Result<(), IoError>>,
 }
@@ -37,7 +37,7 @@ impl CheckpointWriter {
             for checkpoint in wakes.into_iter().filter_map(|()| take()) {
                 let kept = replace_file(&path, &checkpoint.to_bytes());
                 if let (Err(error), true) = (&kept, last.is_ok()) {
-                    tracing::warn!("{error}; the robot goes on, the file stays as it was");
+                    tracing::warn!("{error}; the robot continues, the file is unchanged");
                 }
                 last = kept;
             }

@@ -1,4 +1,4 @@
-//! A run of the robot on any body: what every front end shares.
+//! A run of the robot on any body, shared by all front ends.
 //!
 //! A [`RunSetup`] names the robot and its mission. [`run_on_body`] feeds the robot from a body ([`trundle_core::RobotBody`]: simulator
 //! or hardware; [`RunReplayer`]: a recording), records each input, and ends when the mission is over. [`report::write_run`] writes the

@@ -42,7 +42,7 @@ struct TaskEntry {
     tolerance_m: Option<f64>,
     /// Difference of heading that counts as an arrival \[deg\].
     heading_tolerance_deg: Option<f64>,
-    /// What the robot does if an obstacle blocks its path to a goal.
+    /// Behaviour if an obstacle blocks the path to a goal.
     when_blocked: Option<WhenBlocked>,
 }
 

@@ -17,7 +17,7 @@ pub struct PoseSample {
     pub estimate: Pose2,
     /// The true pose.
     pub truth: Pose2,
-    /// Error of the estimate that is kept with a probability of 95 %, as the robot claims it.
+    /// Bound of the estimate's error with a probability of 95 %, by the robot's covariance.
     pub bound: PoseBound,
     /// Normalised squared error of the estimate (NEES), 3 degrees of freedom; `None` for a singular covariance.
     pub nees: Option<f64>,

@@ -213,7 +213,7 @@ impl RecordingFile {
         let shortage = self.space.as_mut().and_then(FreeSpace::shortage_at_message);
         let failure = if shortage.is_none() { line(recorder).err() } else { None };
         if let Some(why) = shortage.or_else(|| failure.as_ref().map(ToString::to_string)) {
-            tracing::warn!("{why}; the recording ends here, the robot goes on");
+            tracing::warn!("{why}; the recording ends here, the robot continues");
             let finished = self.recorder.take().map_or(Ok(()), |recorder| recorder.finish().map(drop));
             self.failure = failure.or(finished.err());
         }

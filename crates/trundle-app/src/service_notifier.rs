@@ -9,7 +9,7 @@ const WATCHDOG_VARIABLE: &str = "WATCHDOG_USEC";
 /// Parts of that time between two messages. Source: `sd_watchdog_enabled(3)` advises half; a step may be late.
 const MESSAGES_PER_WATCHDOG_TIME: u32 = 4;
 
-/// Tells the service manager that the robot's loop is alive. Without a service manager it does nothing.
+/// Notifies the service manager that the robot's loop is alive. Without a service manager it does nothing.
 #[derive(Debug, Default)]
 pub struct ServiceNotifier {
     /// The connection, until the first message fails.

@@ -105,7 +105,7 @@ impl<'s> RunSession<'s> {
         let (stamp, report) = match input {
             RunInput::Event(event) => (event.stamp(), self.on_event(event)?),
             RunInput::Answer(answer) => (self.log.now, self.apply_answer(answer)),
-            RunInput::Operator(request) => (self.log.now, self.obey(request)?),
+            RunInput::Operator(request) => (self.log.now, self.execute(request)?),
             RunInput::Interrupted => return self.interrupt(body),
         };
         if let Some(twist) = report.twist {
@@ -217,18 +217,18 @@ impl<'s> RunSession<'s> {
     }
 
     /// The robot follows an operator from here on.
-    fn obey(&mut self, request: OperatorRequest) -> Result<StepReport, AppError> {
+    fn execute(&mut self, request: OperatorRequest) -> Result<StepReport, AppError> {
         self.record_mark(RunMark::Operator(request.clone()));
         if let Some(link) = &mut self.operator {
             link.note_request(&request);
         }
         let ended = self.robot.tasks_ended().to_vec();
-        let report = self.robot.obey(request.command)?;
+        let report = self.robot.execute(request.command)?;
         if report.mission_replaced {
             self.earlier_tasks.extend(ended);
         }
         if let Some(link) = &mut self.operator {
-            link.note_obeyed(request.id, &report);
+            link.note_executed(request.id, &report);
         }
         Ok(report)
     }

@@ -109,7 +109,7 @@ impl Surface {
         let mut is_interrupted = false;
         for (i, frame) in input.frames()?.enumerate() {
             let frame = frame?;
-            // A signal that ended the tracking does not end the surface of what was tracked; a second one ends the program.
+            // A signal that ended the tracking does not end the surface of the tracked images; a second one ends the program.
             let done = || format!("surface of {i} of {} images", poses.len());
             is_interrupted = frame.stamp() <= *last && !is_stopped && stop::is_requested(done);
             if is_interrupted || frame.stamp() > *last {

@@ -46,9 +46,9 @@ fn distance_along(hull: &RoundedHull, ahead: Vector2, p: Vector2, radius: f64) -
     };
     let of_corner = |corner: Vector2| {
         let to = p - corner;
-        let (way, beside) = (to.dot(&ahead), ahead.perp(&to));
-        let way = way - (radius * radius - beside * beside).max(0.0).sqrt();
-        (beside.abs() < radius && way >= 0.0).then_some(way)
+        let (travelled, beside) = (to.dot(&ahead), ahead.perp(&to));
+        let travelled = travelled - (radius * radius - beside * beside).max(0.0).sqrt();
+        (beside.abs() < radius && travelled >= 0.0).then_some(travelled)
     };
     let of_corners = hull.core.iter().filter_map(|corner| of_corner(corner.at));
     hull.edges.iter().filter_map(of_side).chain(of_corners).min_by(f64::total_cmp)
@@ -122,8 +122,8 @@ mod tests {
     /// The contact found by driving (or, without speed, turning) in small steps.
     fn by_driving(twist: Twist2, reach: f64, distance: impl Fn(Pose2) -> f64) -> Option<f64> {
         let (step, rate) = (5e-4, if twist.v == 0.0 { twist.omega.abs() } else { twist.v.abs() });
-        let mut ways = (0..(reach / step) as usize).map(|i| i as f64 * step);
-        ways.find(|way| distance(Pose2::IDENTITY.advance(twist, way / rate)) <= 0.0)
+        let mut travelleds = (0..(reach / step) as usize).map(|i| i as f64 * step);
+        travelleds.find(|travelled| distance(Pose2::IDENTITY.advance(twist, travelled / rate)) <= 0.0)
     }
 
     fn agree(found: Option<f64>, driven: Option<f64>, reach: f64) -> Result<(), TestCaseError> {
@@ -200,13 +200,13 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_beside_is_never_met_and_a_wall_ahead_is() {
+    fn a_wall_beside_is_never_touched_and_a_wall_ahead_is() {
         let ahead = Twist2::new(0.5, 0.0);
         let mut beside = (-20..=20).map(|i| Vector2::new(f64::from(i) * 0.1, 0.25));
         assert!(beside.all(|p| arc_contact(&disc(0.2), ahead, p, 0.0).is_none()));
         let mut beside = (-20..=20).map(|i| Vector2::new(f64::from(i) * 0.1, 0.205));
         assert!(beside.all(|p| arc_contact(&cart(), ahead, p, 0.0).is_none()));
-        let way = |hull: RoundedHull| arc_contact(&hull, ahead, Vector2::new(1.0, 0.0), 0.0).unwrap();
-        assert!((way(disc(0.2)) - 0.8).abs() < 1e-12 && (way(cart()) - 0.6).abs() < 1e-12);
+        let travelled = |hull: RoundedHull| arc_contact(&hull, ahead, Vector2::new(1.0, 0.0), 0.0).unwrap();
+        assert!((travelled(disc(0.2)) - 0.8).abs() < 1e-12 && (travelled(cart()) - 0.6).abs() < 1e-12);
     }
 }

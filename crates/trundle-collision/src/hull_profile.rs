@@ -1,8 +1,8 @@
 //! A lookup table of a hull: fast lower bounds of the free motion for boxes of points.
 //!
 //! Problem: the closed forms cost half a microsecond per point. Idea: at rings around the axle the headings of contact are computed once,
-//! exactly. A point farther out than a ring is met at fewer headings, as the hull together with the axle is convex. In strips along x the
-//! table holds the hull's extent, rounded up. A box of points that is not met before a known contact can be skipped. All rounding is
+//! exactly. A point farther out than a ring is touched at fewer headings, as the hull together with the axle is convex. In strips along x the
+//! table holds the hull's extent, rounded up. A box of points that is not touched before a known contact can be skipped. All rounding is
 //! outward, so no contact is missed.
 
 use crate::oriented_box::OrientedBox;
@@ -211,12 +211,12 @@ pub fn wrap_positive(angle: f64) -> f64 {
 /// Upper bound of the hull's extent along x (for `sign` -1 against x) between two values of y, m. The front is concave: its maximum is at
 /// the foremost corner, or at the end nearer to it.
 fn front_in(hull: &RoundedHull, low: f64, high: f64, sign: f64) -> f64 {
-    let (_, most) = hull.core_extent(Vector2::x() * sign);
-    let foremost = hull.core.iter().find(|corner| sign * corner.at.x >= most);
+    let (_, max) = hull.core_extent(Vector2::x() * sign);
+    let foremost = hull.core.iter().find(|corner| sign * corner.at.x >= max);
     let apex = foremost.map_or(low, |corner| corner.at.y);
     let reach = front_extent(hull, apex.clamp(low, high), sign);
     let is_known = reach.is_finite() && !(low..=high).contains(&apex);
-    if is_known { reach + ROUNDING_SLACK } else { most + hull.radius + ROUNDING_SLACK }
+    if is_known { reach + ROUNDING_SLACK } else { max + hull.radius + ROUNDING_SLACK }
 }
 
 #[cfg(test)]
@@ -251,8 +251,8 @@ mod tests {
             let turns = profile.free_turns(&bounds);
             for arc in &blocked {
                 let (left, right) = arc.free_turn_from(0.0);
-                let least = turns.expect("the box is met");
-                prop_assert!(least.0 <= left + 1e-9 && least.1 <= right + 1e-9, "{least:?} {left} {right}");
+                let min = turns.expect("the box is met");
+                prop_assert!(min.0 <= left + 1e-9 && min.1 <= right + 1e-9, "{min:?} {left} {right}");
             }
             let inside = |heading: f64| blocked.iter().any(|arc| (heading - arc.start).rem_euclid(TAU) <= arc.length);
             for i in 0..90 {
@@ -264,8 +264,8 @@ mod tests {
             if !hull.overlaps(&Segment::point(p)) {
                 let (ahead, behind) = profile.free_distances(&bounds);
                 match straight_contact(&hull, &Segment::point(p)) {
-                    Some(StraightContact::Ahead(way)) => prop_assert!(ahead <= way + 1e-9, "{ahead} {way}"),
-                    Some(StraightContact::Behind(way)) => prop_assert!(behind <= way + 1e-9, "{behind} {way}"),
+                    Some(StraightContact::Ahead(travelled)) => prop_assert!(ahead <= travelled + 1e-9, "{ahead} {travelled}"),
+                    Some(StraightContact::Behind(travelled)) => prop_assert!(behind <= travelled + 1e-9, "{behind} {travelled}"),
                     None => {}
                 }
             }

@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Distortion {
-    /// Radial coefficient of r^2, in the order of OpenCV. Default 0.
+    /// Radial coefficient of r^2, in the order of OpenCV, any finite number. Default 0.
     pub k1: f64,
-    /// Radial coefficient of r^4. Default 0.
+    /// Radial coefficient of r^4, any finite number. Default 0.
     pub k2: f64,
-    /// First tangential coefficient. Default 0.
+    /// First tangential coefficient, any finite number. Default 0.
     pub p1: f64,
-    /// Second tangential coefficient. Default 0.
+    /// Second tangential coefficient, any finite number. Default 0.
     pub p2: f64,
-    /// Radial coefficient of r^6. Default 0.
+    /// Radial coefficient of r^6, any finite number. Default 0.
     pub k3: f64,
 }
 
@@ -32,9 +32,9 @@ pub struct PinholeCamera {
     fx: f64,
     /// Focal length along y, px, above 0. Without the table 367.19.
     fy: f64,
-    /// Principal point along x, px, from the centre of the left column. Without the table 255.5.
+    /// Principal point along x, px, from the centre of the left column, in a robot file 0 to width - 1. Without the table 255.5.
     cx: f64,
-    /// Principal point along y, px, from the centre of the top row. Without the table 211.5.
+    /// Principal point along y, px, from the centre of the top row, in a robot file 0 to height - 1. Without the table 211.5.
     cy: f64,
     /// Lens distortion.
     distortion: Distortion,
@@ -72,7 +72,7 @@ impl TryFrom<Unchecked> for PinholeCamera {
 }
 
 /// Largest number of columns or rows. Larger numbers are refused as typing errors. Source: ours.
-const MOST_PIXELS: usize = 16_384;
+const MAX_PIXELS: usize = 16_384;
 
 /// Longest readout time of a camera: 0.05 s. A longer one is refused: no colour camera of a robot takes longer. Source: ours.
 const MAX_READOUT_S: f64 = 0.05;
@@ -88,7 +88,7 @@ impl PinholeCamera {
         (cx, cy): (f64, f64),
         distortion: Distortion,
     ) -> Result<Self, Invalid> {
-        let is_a_side = |pixels: usize| (1..=MOST_PIXELS).contains(&pixels);
+        let is_a_side = |pixels: usize| (1..=MAX_PIXELS).contains(&pixels);
         if !is_a_side(width) || !is_a_side(height) {
             let size = format!("{width} x {height}");
             return Err(Invalid::new("camera size", size, "px", "1 x 1 to 16384 x 16384"));

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cell {
-    /// Never seen, or undecided.
+    /// Never observed, or undecided.
     Unknown,
     /// The cell contains no obstacle.
     Free,
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn origins_that_no_cell_can_be_told_apart_at_are_refused() {
+    fn origins_beyond_the_resolution_of_cells_are_refused() {
         let at = |x: f64, resolution| GridGeometry::new(resolution, Vector2::new(x, 0.0), 1, 1);
         let refused = at(8.126587341910605e94, 1e-9).unwrap_err().to_string();
         assert!(

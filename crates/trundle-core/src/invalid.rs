@@ -8,7 +8,7 @@ use thiserror::Error;
 pub struct Invalid {
     /// The field or argument, as the user wrote it.
     pub field: String,
-    /// The value met.
+    /// The refused value.
     pub value: String,
     /// Unit of the value; empty without a unit.
     pub unit: &'static str,
@@ -85,8 +85,8 @@ mod tests {
         for (value, text) in
             [(1e300, "1e300"), (-1e-300, "-1e-300"), (1.5, "1.5"), (1.7e18, "1700000000000000000")]
         {
-            let said = require_in("x", value, "m", 2.0, 3.0).unwrap_err().to_string();
-            assert_eq!(said, format!("x is {text} m, expected 2 to 3"));
+            let message = require_in("x", value, "m", 2.0, 3.0).unwrap_err().to_string();
+            assert_eq!(message, format!("x is {text} m, expected 2 to 3"));
         }
         let words = "a".repeat(300);
         assert_eq!(Invalid::new("x", &words, "", "y").value, words);

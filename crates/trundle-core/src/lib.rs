@@ -3,6 +3,15 @@
 //! Plain data only: no algorithm, no IO, no clock, no global random generator. Units are SI and radians; a suffix
 //! (`_px`, `_cells`, `_deg`, `_ms`) marks other units. Axes follow REP 103 (x forward, y left, z up) for the
 //! base and the map, and the optical convention (x right, y down, z forward) for cameras. See `docs/conventions.md`.
+//!
+//! ```
+//! use trundle_core::{Pose2, Vector2};
+//! # use std::f64::consts::FRAC_PI_2;
+//! // Frames cancel: a point 0.5 m ahead of a robot that stands at (1, 2) m and faces +y.
+//! let map_from_base = Pose2::new(1.0, 2.0, FRAC_PI_2);
+//! let p_map = map_from_base.transform(Vector2::new(0.5, 0.0));
+//! assert!((p_map - Vector2::new(1.0, 2.5)).norm() < 1e-12);
+//! ```
 
 mod angle;
 mod body;

@@ -19,7 +19,7 @@ pub enum Beam {
     Unseen,
 }
 
-/// A stretch of a beam that was seen to be free.
+/// A stretch of a beam that was observed to be free.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeSpan {
     /// Index of the beam.

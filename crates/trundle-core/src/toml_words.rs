@@ -31,7 +31,7 @@ pub struct TomlProblem {
 const FORM_FAULTS: [(&str, &str); 13] = [
     ("key with no value", "there is no value, expected KEY = VALUE"),
     ("missing value", "there is no value, expected KEY = VALUE"),
-    ("cannot recurse further", "lists or tables lie too deep within each other, expected 3 levels at most"),
+    ("cannot recurse further", "lists or tables are nested too deeply, expected 3 levels at most"),
     ("string values must be quoted", VALUE_WANTED),
     ("invalid value", VALUE_WANTED),
     (

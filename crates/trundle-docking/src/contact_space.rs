@@ -83,13 +83,13 @@ impl<'a> ContactSpace<'a> {
     }
 
     /// Cost limit of the whole plan.
-    pub(crate) fn most(&self) -> u64 {
-        self.budget.most
+    pub(crate) fn max(&self) -> u64 {
+        self.budget.max
     }
 
     /// [`ContactSpace::work`] after `more` work, at most the limit of the whole plan.
     pub(crate) fn until(&self, more: u64) -> u64 {
-        self.work().saturating_add(more).min(self.budget.most)
+        self.work().saturating_add(more).min(self.budget.max)
     }
 
     /// Whether the work of the whole plan has reached its limit.
@@ -122,10 +122,10 @@ impl<'a> ContactSpace<'a> {
                 let by = if angle > 0.0 { free.left_by } else { free.right_by };
                 by.filter(|_| !free.allows(angle))
             }
-            Motion::Drive(way) => {
-                let free = self.drive(pose, way.abs() + 0.01);
-                let by = if way > 0.0 { free.ahead_by } else { free.behind_by };
-                by.filter(|_| !free.allows(way))
+            Motion::Drive(distance) => {
+                let free = self.drive(pose, distance.abs() + 0.01);
+                let by = if distance > 0.0 { free.ahead_by } else { free.behind_by };
+                by.filter(|_| !free.allows(distance))
             }
         }
     }
@@ -143,7 +143,7 @@ impl<'a> ContactSpace<'a> {
         match &self.profile {
             Some(profile) => {
                 let mut query = TurnQuery::new((hull, profile), pose, (angles, arcs), &mut free);
-                work += self.scene.ask(&mut query);
+                work += self.scene.run_query(&mut query);
             }
             None => self.scene.visit_points(center, half, |p, number| {
                 free.meet(hull, &Segment::point(p), number, pose, angles, arcs);
@@ -173,7 +173,9 @@ impl<'a> ContactSpace<'a> {
         };
         self.scene.visit_pieces(center, half, &mut look);
         match &self.profile {
-            Some(profile) => work += self.scene.ask(&mut StraightQuery::new(hull, profile, pose, &mut free)),
+            Some(profile) => {
+                work += self.scene.run_query(&mut StraightQuery::new(hull, profile, pose, &mut free))
+            }
             None => self.scene.visit_points(center, half, |p, number| look(&Segment::point(p), number)),
         }
         self.spend(work);
@@ -198,7 +200,7 @@ impl<'a> ContactSpace<'a> {
                 let all = (hull, profile);
                 let mut query =
                     HeadingsQuery::new(all, position, angles, blocked, (first, self.missing_heading));
-                work += self.scene.ask(&mut query);
+                work += self.scene.run_query(&mut query);
             }
             None => self.scene.visit_points(position, half, |p, _| {
                 let segment = Segment::point(p).in_frame(position, 1.0, 0.0);

@@ -20,7 +20,7 @@ pub enum Method {
 impl Method {
     /// The choices of a front end: name, help text, value.
     pub const CHOICES: [(&'static str, &'static str, Self); 2] = [
-        ("optimal", "Least time, with a proven bound", Self::Optimal),
+        ("optimal", "Shortest time, with a proven bound", Self::Optimal),
         ("paper", "The greedy method of Hong (2024)", Self::Hong24),
     ];
 }
@@ -46,9 +46,9 @@ pub struct DockingConfig {
     pub reach: f64,
     /// Largest distance of the goal, m, 0.1 to 20. Farther goals need a path first. Default 5 (ours).
     pub max_distance: f64,
-    /// Tolerance of the position, m, 0.001 to 0.1; also the side of the certificate's cells. Default 0.01.
+    /// Tolerance of the position, m, 0.001 to 0.1; also the side of the certificate's cells. Default 0.01 (ours).
     pub position_tolerance: f64,
-    /// Tolerance of the heading, rad, 0.001 to 0.2. Default 0.0175 (1 deg).
+    /// Tolerance of the heading, rad, 0.001 to 0.2. Default 0.0175 (1 deg; ours).
     pub heading_tolerance: f64,
     /// Maximum number of nodes in the search for manoeuvres of three and more straight moves, 0 to 10^7. More find more manoeuvres and take
     /// longer. Default 2500 (ours: at most a second, in hard problems only).
@@ -59,13 +59,13 @@ pub struct DockingConfig {
     /// Cost limit of a whole plan, in the same counted steps, 10^5 to 10^11. At the limit the best manoeuvre so far is the result. Default
     /// 2 * 10^8 (ours: two seconds; the hardest of 5,000 corridor problems takes half of it); in the robot file 2 * 10^7.
     pub plan_work: u64,
-    /// Cost limit of a whole plan among more than 200 points, in the same counted steps, if smaller than `plan_work`. Default 6 * 10^6
+    /// Cost limit of a whole plan among more than 200 points, in the same counted steps, 10^5 to 10^11, if smaller than `plan_work`. Default 6 * 10^6
     /// (ours: less than 100 ms among a hundred thousand points).
     pub points_work: u64,
     /// Number of boxes of the branch and bound for the lower bound, 0 to 10^8. With more than 200 segments the number is reduced in
     /// proportion. Default 400 (ours: a few ms).
     pub bound_boxes: usize,
-    /// Relative gap between time and lower bound at which the search ends, 0 to 1. Default 0.01.
+    /// Relative gap between time and lower bound at which the search ends, 0 to 1. Default 0.01 (ours).
     pub gap: f64,
     /// Parameters of \[Hong24\], for [`Method::Hong24`].
     pub paper: Hong24Config,
@@ -105,8 +105,8 @@ impl DockingConfig {
     /// contain all of them.
     pub fn view(&self, footprint: &Footprint, start: &Pose2, goal: &Pose2) -> (Vector2, f64) {
         let middle = (start.position() + goal.position()) / 2.0;
-        let way = WIDER_REACH_FACTOR * self.reach + start.distance(goal) / 2.0;
-        (middle, way + footprint.circumscribed_radius() + OBSTACLE_MARGIN_M)
+        let distance = WIDER_REACH_FACTOR * self.reach + start.distance(goal) / 2.0;
+        (middle, distance + footprint.circumscribed_radius() + OBSTACLE_MARGIN_M)
     }
 
     /// Returns a valid configuration unchanged.

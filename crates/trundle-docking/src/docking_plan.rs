@@ -16,12 +16,12 @@ pub enum DockingRefusal {
     #[error("the goal overlaps {0}")]
     GoalBlocked(Blocker),
     /// The goal is too far for docking.
-    #[error("the goal is {distance:.2} m away, expected at most {most:.2} m: plan a path there first")]
+    #[error("the goal is {distance:.2} m away, expected at most {max:.2} m: plan a path there first")]
     TooFar {
         /// Distance from start to goal, m.
         distance: f64,
         /// `docking.max_distance`, m.
-        most: f64,
+        max: f64,
     },
     /// A number of the input is invalid.
     #[error(transparent)]

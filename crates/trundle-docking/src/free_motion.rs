@@ -87,18 +87,18 @@ impl FreeDrive {
             Some(Blocker::listed(number, at))
         };
         match straight_contact(hull, seen) {
-            Some(StraightContact::Ahead(way)) if way < self.ahead => {
-                (self.ahead, self.ahead_by) = (way, by())
+            Some(StraightContact::Ahead(distance)) if distance < self.ahead => {
+                (self.ahead, self.ahead_by) = (distance, by())
             }
-            Some(StraightContact::Behind(way)) if way < self.behind => {
-                (self.behind, self.behind_by) = (way, by())
+            Some(StraightContact::Behind(distance)) if distance < self.behind => {
+                (self.behind, self.behind_by) = (distance, by())
             }
             _ => {}
         }
     }
 
-    /// Whether a straight move over the distance `way` (m, backward negative) is free.
-    pub fn allows(&self, way: f64) -> bool {
-        way <= self.ahead + ROUNDING_SLACK && -way <= self.behind + ROUNDING_SLACK
+    /// Whether a straight move over the distance `distance` (m, backward negative) is free.
+    pub fn allows(&self, distance: f64) -> bool {
+        distance <= self.ahead + ROUNDING_SLACK && -distance <= self.behind + ROUNDING_SLACK
     }
 }

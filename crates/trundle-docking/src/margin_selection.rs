@@ -31,8 +31,8 @@ pub struct MarginSelection<'a> {
     pub footprint: &'a Footprint,
     pub scene: &'a ObstacleScene,
     pub query: DockingQuery,
-    pub most: f64,
-    pub least: f64,
+    pub max: f64,
+    pub min: f64,
     pub effort: Effort,
     /// Part of the time that a smaller margin must save; 1 keeps the largest possible margin.
     pub saving: f64,
@@ -49,19 +49,19 @@ struct FoundLegs<'a> {
 impl<'a> MarginSelection<'a> {
     /// The manoeuvre with the best compromise of margin and time.
     pub async fn plan(&self) -> DockingPlan {
-        if let Some(found) = self.one_or_two(self.most).await {
+        if let Some(found) = self.one_or_two(self.max).await {
             return self.solution(found).await;
         }
-        if self.most <= self.least {
-            return self.plan_of(self.many(self.least, 1).await).await;
+        if self.max <= self.min {
+            return self.plan_of(self.many(self.min, 1).await).await;
         }
-        let mut quick = self.one_or_two(self.most / 3.0).await;
+        let mut quick = self.one_or_two(self.max / 3.0).await;
         if quick.is_none() {
-            quick = self.one_or_two(self.least).await;
+            quick = self.one_or_two(self.min).await;
         }
         let Some(quick) = quick else {
             // A proof for the smallest margin is valid for all.
-            let never = min_time::never(&self.query, &self.space(self.least), self.effort).await;
+            let never = min_time::never(&self.query, &self.space(self.min), self.effort).await;
             return match never {
                 Some(LegOutcome::Disconnected(certificate, by)) => {
                     self.plan_of(Err(NoLegs { certificate, by, limit: None })).await
@@ -69,7 +69,7 @@ impl<'a> MarginSelection<'a> {
                 _ => self.plan_of(self.with_many_motions().await).await,
             };
         };
-        match self.many(self.most, if self.saving < 1.0 { REDUCED_WORK_DIVISOR } else { 1 }).await {
+        match self.many(self.max, if self.saving < 1.0 { REDUCED_WORK_DIVISOR } else { 1 }).await {
             Ok(slow) if (1.0 - self.saving) * slow.legs.0 <= quick.legs.0 => self.solution(slow).await,
             _ => self.solution(quick).await,
         }
@@ -77,20 +77,20 @@ impl<'a> MarginSelection<'a> {
 
     /// The manoeuvre of many motions, with the full margin, the smallest margin, or one between.
     async fn with_many_motions(&self) -> Result<FoundLegs<'a>, NoLegs> {
-        let whole = self.many(self.most, 1).await;
+        let whole = self.many(self.max, 1).await;
         if let Ok(found) = &whole
             && (self.saving >= 1.0 || !self.is_long(found).await)
         {
             return whole;
         }
-        let least = match (whole, self.many(self.least, 1).await) {
-            (Ok(whole), Ok(least)) if (1.0 - self.saving) * whole.legs.0 <= least.legs.0 => return Ok(whole),
+        let min = match (whole, self.many(self.min, 1).await) {
+            (Ok(whole), Ok(min)) if (1.0 - self.saving) * whole.legs.0 <= min.legs.0 => return Ok(whole),
             (Ok(whole), Err(_)) => return Ok(whole),
-            (_, least) => least?,
+            (_, min) => min?,
         };
-        match self.many(self.most / 3.0, 1).await {
-            Ok(between) if (1.0 - self.saving) * between.legs.0 <= least.legs.0 => Ok(between),
-            _ => Ok(least),
+        match self.many(self.max / 3.0, 1).await {
+            Ok(between) if (1.0 - self.saving) * between.legs.0 <= min.legs.0 => Ok(between),
+            _ => Ok(min),
         }
     }
 

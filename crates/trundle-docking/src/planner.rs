@@ -34,7 +34,7 @@ pub type DockingJob = PlanningJob<DockingPlan>;
 #[derive(Clone, Copy)]
 struct SearchRequest<'a> {
     /// A margin that start and goal allow, m.
-    most: f64,
+    max: f64,
     footprint: &'a Footprint,
     scene: &'a ObstacleScene,
     query: DockingQuery,
@@ -82,10 +82,10 @@ impl DockingPlanner {
         start: Pose2,
         goal: Pose2,
     ) -> Result<DockingPlan, DockingRefusal> {
-        let most = self.checked(margin, footprint, scene, &start, &goal)?;
+        let max = self.checked(margin, footprint, scene, &start, &goal)?;
         let budget = &WorkBudget::endless(self.max_of(scene));
         let query = self.query(start, goal);
-        Ok(run_to_end(self.search(SearchRequest { most, footprint, scene, query, budget })))
+        Ok(run_to_end(self.search(SearchRequest { max, footprint, scene, query, budget })))
     }
 
     /// Starts the search of [`DockingPlanner::plan_with_margin`]; it continues in parts ([`PlanningJob::advance`]).
@@ -100,14 +100,14 @@ impl DockingPlanner {
         start: Pose2,
         goal: Pose2,
     ) -> Result<DockingJob, DockingRefusal> {
-        let most = self.checked(margin, footprint, scene, &start, &goal)?;
+        let max = self.checked(margin, footprint, scene, &start, &goal)?;
         let (planner, footprint, query) = (self.clone(), footprint.clone(), self.query(start, goal));
         let scene = around(&footprint, scene, &wider(query));
         let budget = WorkBudget::rationed(self.max_of(&scene));
         let counted = Arc::clone(&budget);
         let search = async move {
             let (footprint, scene, budget) = (&footprint, &scene, &counted);
-            planner.search(SearchRequest { most, footprint, scene, query, budget }).await
+            planner.search(SearchRequest { max, footprint, scene, query, budget }).await
         };
         Ok(PlanningJob::new(budget, search))
     }
@@ -148,12 +148,12 @@ impl DockingPlanner {
     /// The optimal method: first near the ends, then in a wider region.
     async fn by_search(
         &self,
-        SearchRequest { most, footprint, scene, query, budget }: SearchRequest<'_>,
+        SearchRequest { max, footprint, scene, query, budget }: SearchRequest<'_>,
     ) -> DockingPlan {
         let near = around(footprint, scene, &query);
-        let least = most.min(0.0);
+        let min = max.min(0.0);
         let (effort, saving) = (self.effort(&near), self.config.margin_saving);
-        let close = MarginSelection { footprint, scene: &near, query, most, least, effort, saving, budget };
+        let close = MarginSelection { footprint, scene: &near, query, max, min, effort, saving, budget };
         let nearby = match close.plan().await {
             DockingPlan::Impossible(nearby) => nearby,
             found => return found,
@@ -161,8 +161,7 @@ impl DockingPlanner {
         let query = wider(query);
         let far = around(footprint, scene, &query);
         let effort = self.effort(&far);
-        let wide =
-            MarginSelection { footprint, scene: &far, query, most: least, least, effort, saving, budget };
+        let wide = MarginSelection { footprint, scene: &far, query, max: min, min, effort, saving, budget };
         match wide.plan().await {
             DockingPlan::Impossible(none) if none.certificate == Certificate::None => {
                 let limit = if budget.is_spent() { Some(self.limit_of(scene).1) } else { none.limit };
@@ -204,10 +203,10 @@ impl DockingPlanner {
     /// The method of \[Hong24\], with the full margin, a third of it, or none.
     async fn by_paper(
         &self,
-        SearchRequest { most, footprint, scene, query, budget }: SearchRequest<'_>,
+        SearchRequest { max, footprint, scene, query, budget }: SearchRequest<'_>,
     ) -> DockingPlan {
         let (config, near) = (&self.config, around(footprint, scene, &query));
-        let margins = if most > 0.0 { vec![most, most / 3.0, 0.0] } else { vec![most] };
+        let margins = if max > 0.0 { vec![max, max / 3.0, 0.0] } else { vec![max] };
         for margin in margins {
             let space = ContactSpace::metered(RoundedHull::new(footprint, margin), &near, Arc::clone(budget));
             let found =
@@ -261,18 +260,18 @@ impl DockingPlanner {
                 return Err(Invalid::new(name, value, "", "finite numbers").into());
             }
         }
-        let (distance, most) = (start.distance(goal), self.config.max_distance);
-        if distance > most {
-            return Err(DockingRefusal::TooFar { distance, most });
+        let (distance, max) = (start.distance(goal), self.config.max_distance);
+        if distance > max {
+            return Err(DockingRefusal::TooFar { distance, max });
         }
         let (mut margin, overlap) = (margin, self.config.overlap);
-        let least = RoundedHull::new(footprint, -overlap);
+        let min = RoundedHull::new(footprint, -overlap);
         let ends = [
             (start, DockingRefusal::StartBlocked as fn(Blocker) -> DockingRefusal),
             (goal, DockingRefusal::GoalBlocked),
         ];
         for (pose, refusal) in ends {
-            if let Some((clearance, by)) = scene.clearance_of(&least, pose, margin + overlap + 2e-4) {
+            if let Some((clearance, by)) = scene.clearance_of(&min, pose, margin + overlap + 2e-4) {
                 if clearance <= 1e-9 {
                     return Err(refusal(scene.named(by)));
                 }
@@ -288,7 +287,7 @@ fn wider(query: DockingQuery) -> DockingQuery {
     DockingQuery { reach: WIDER_REACH_FACTOR * query.reach, ..query }
 }
 
-/// The part of a scene that a manoeuvre can meet.
+/// The part of a scene that a manoeuvre can touch.
 fn around(footprint: &Footprint, scene: &ObstacleScene, query: &DockingQuery) -> ObstacleScene {
     let half = query.half() + footprint.circumscribed_radius() + OBSTACLE_MARGIN_M;
     scene.around(query.center(), half)

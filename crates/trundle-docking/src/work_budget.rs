@@ -16,18 +16,18 @@ pub struct WorkBudget {
     work: AtomicU64,
     granted: AtomicU64,
     /// Total work at which every search ends.
-    pub most: u64,
+    pub max: u64,
 }
 
 impl WorkBudget {
     /// A budget that never yields.
-    pub fn endless(most: u64) -> Arc<Self> {
-        Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(u64::MAX), most })
+    pub fn endless(max: u64) -> Arc<Self> {
+        Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(u64::MAX), max })
     }
 
     /// A budget that yields immediately, until work is granted.
-    pub fn rationed(most: u64) -> Arc<Self> {
-        Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(0), most })
+    pub fn rationed(max: u64) -> Arc<Self> {
+        Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(0), max })
     }
 
     /// Work so far.
@@ -37,7 +37,7 @@ impl WorkBudget {
 
     /// Whether the total limit is reached.
     pub fn is_spent(&self) -> bool {
-        self.work() >= self.most
+        self.work() >= self.max
     }
 
     /// Adds work. A plan runs on one thread.

@@ -7,6 +7,15 @@
 //! | [`clock`] | device clocks mapped to one clock, events put in order |
 //!
 //! [`BaseSpec`] and [`CameraSpec`] are a user's names of a base and a camera.
+//!
+//! ```
+//! use trundle_drivers::{BaseSpec, CameraSpec};
+//! let base: BaseSpec = "kobuki:/dev/ttyUSB0".parse()?;
+//! assert_eq!(base.to_string(), "kobuki:/dev/ttyUSB0");
+//! let camera: CameraSpec = "stream:/tmp/camera".parse()?;
+//! assert_eq!(camera.to_string(), "stream:/tmp/camera");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod base_spec;
 pub mod camera;

@@ -11,7 +11,7 @@ use trundle_core::{Invalid, require_in};
 pub struct OdometryConfig {
     /// Noise of the position along the motion: sigma after 1 m, m / sqrt(m), 0 to 1. A larger value trusts images and scans more. Default
     /// 0.02: wheel radius and floor.
-    pub way_noise: f64,
+    pub distance_noise: f64,
     /// Noise of the position across the motion: sigma after 1 m, m / sqrt(m), 0 to 1. Default 0.001: driven wheels hardly slide sideways;
     /// models of odometry (Chong and Kleeman 1997) have no such noise.
     pub sideways_noise: f64,
@@ -22,7 +22,7 @@ pub struct OdometryConfig {
     /// depends on the contact points of the tyres.
     pub wheel_turn_noise: f64,
     /// Noise of the heading by the wheels: sigma after 1 m, rad / sqrt(m), 0 to 1. Default 0.02: unequal wheels.
-    pub wheel_way_noise: f64,
+    pub wheel_distance_noise: f64,
     /// Noise of the heading by the gyro, besides the error of its scale: sigma after a turn of 1 rad, rad / sqrt(rad), 0 to 1. Default
     /// 0.002.
     pub gyro_turn_noise: f64,
@@ -62,11 +62,11 @@ pub struct OdometryConfig {
 impl Default for OdometryConfig {
     fn default() -> Self {
         Self {
-            way_noise: 0.02,
+            distance_noise: 0.02,
             sideways_noise: 0.001,
             spot_noise: 0.002,
             wheel_turn_noise: 0.05,
-            wheel_way_noise: 0.02,
+            wheel_distance_noise: 0.02,
             gyro_turn_noise: 0.002,
             gyro_time_noise: 0.0007,
             wheel_radius_sigma: 0.01,
@@ -91,11 +91,11 @@ impl OdometryConfig {
     /// # Errors
     /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
-        require_in("way_noise", self.way_noise, "m/sqrt(m)", 0.0, 1.0)?;
+        require_in("distance_noise", self.distance_noise, "m/sqrt(m)", 0.0, 1.0)?;
         require_in("sideways_noise", self.sideways_noise, "m/sqrt(m)", 0.0, 1.0)?;
         require_in("spot_noise", self.spot_noise, "m/sqrt(rad)", 0.0, 1.0)?;
         require_in("wheel_turn_noise", self.wheel_turn_noise, "rad/sqrt(rad)", 0.0, 1.0)?;
-        require_in("wheel_way_noise", self.wheel_way_noise, "rad/sqrt(m)", 0.0, 1.0)?;
+        require_in("wheel_distance_noise", self.wheel_distance_noise, "rad/sqrt(m)", 0.0, 1.0)?;
         require_in("gyro_turn_noise", self.gyro_turn_noise, "rad/sqrt(rad)", 0.0, 1.0)?;
         require_in("gyro_time_noise", self.gyro_time_noise, "rad/sqrt(s)", 0.0, 1.0)?;
         require_in("wheel_radius_sigma", self.wheel_radius_sigma, "", 0.0, 0.1)?;

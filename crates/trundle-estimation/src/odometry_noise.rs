@@ -38,11 +38,11 @@ pub(crate) fn of_step(config: &OdometryConfig, step: &Step) -> Matrix3<f64> {
     let (distance, turn) = (step.distance.abs(), step.turn.abs());
     let slip = config.slip_length * step.slip;
     // These two constants include slip that the gyro does not measure.
-    let by_wheels = config.wheel_turn_noise.powi(2) * turn + config.wheel_way_noise.powi(2) * distance;
+    let by_wheels = config.wheel_turn_noise.powi(2) * turn + config.wheel_distance_noise.powi(2) * distance;
     let heading = step.by_gyro.unwrap_or(by_wheels);
     let spot = config.spot_noise.powi(2) * turn + slip;
     Matrix3::from_diagonal(&nalgebra::Vector3::new(
-        config.way_noise.powi(2) * distance + spot,
+        config.distance_noise.powi(2) * distance + spot,
         config.sideways_noise.powi(2) * distance + spot,
         heading,
     ))

@@ -11,7 +11,7 @@ use trundle_core::{Pose3, Vector3};
 pub enum Alignment {
     /// No alignment: both are in one frame.
     None,
-    /// By the rotation and translation that leave the least square error (evo's `-a`).
+    /// By the rotation and translation that leave the smallest square error (evo's `-a`).
     #[default]
     Rigid,
     /// By rotation, translation and scale (evo's `-as`): for methods without a known scale.
@@ -48,7 +48,7 @@ impl Similarity {
     }
 }
 
-/// Least gap between the best rotation and the next, relative: below it the rotation is noise of the arithmetic. Source: ours.
+/// Smallest gap between the best rotation and the next, relative: below it the rotation is noise of the arithmetic. Source: ours.
 const MIN_ROTATION_GAP_RATIO: f64 = 1e-12;
 
 /// The transform T that minimises `sum |reference[i] - T estimate[i]|^2`; positions in m, pair by pair.

@@ -38,7 +38,7 @@ pub fn align_maps(truth: &OccupancyGrid, estimate: &OccupancyGrid, guess: Pose2)
     Ok(pose)
 }
 
-/// The pose that moves the firsts onto the seconds with the least square error \[Horn87\], in the plane.
+/// The pose that moves the firsts onto the seconds with the smallest square error \[Horn87\], in the plane.
 fn rigid(pairs: &[(Vector2, Vector2)]) -> Pose2 {
     let count = pairs.len() as f64;
     let (from, to) = pairs.iter().fold((Vector2::zeros(), Vector2::zeros()), |(a, b), (p, q)| (a + p, b + q));

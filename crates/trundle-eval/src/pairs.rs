@@ -95,13 +95,13 @@ impl Delta {
 
 /// Pairs by the distance travelled.
 fn metres(poses: &[(Stamp, Pose3)], delta: f64, all: bool) -> Vec<(usize, usize)> {
-    let mut way = Vec::with_capacity(poses.len());
+    let mut distance = Vec::with_capacity(poses.len());
     let mut sum = 0.0;
     for (i, (_, pose)) in poses.iter().enumerate() {
         sum += if i == 0 { 0.0 } else { (pose.translation - poses[i - 1].1.translation).norm() };
-        way.push(sum);
+        distance.push(sum);
     }
-    chain(poses.len(), all, |i, j| way[j] - way[i] >= delta)
+    chain(poses.len(), all, |i, j| distance[j] - distance[i] >= delta)
 }
 
 /// Pairs (i, first j with `far(i, j)`), `far` being monotone in j: from every i when `all`, else from each j on.

@@ -57,18 +57,19 @@ impl RelationSets {
     /// When the configuration is out of range.
     pub fn of(reference: &[(Stamp, Pose3)], config: &RelationSetsConfig) -> Result<Self, Invalid> {
         let config = config.clone().validated()?;
-        let ways = ways(reference);
+        let lengths = lengths(reference);
         let mut sets = Self::default();
         let relation = |i: usize, j: usize| {
             let ((from, a), (to, b)) = (reference[i], reference[j]);
             Relation { from, to, relative: a.inverse() * b }
         };
         for i in 0..reference.len() {
-            let after =
-                |way: f64| Some(ways.partition_point(|w| *w < ways[i] + way)).filter(|j| *j < ways.len());
+            let after = |length: f64| {
+                Some(lengths.partition_point(|w| *w < lengths[i] + length)).filter(|j| *j < lengths.len())
+            };
             sets.near.extend(after(config.near).map(|j| relation(i, j)));
             sets.far.extend(after(config.far).map(|j| relation(i, j)));
-            let from = after(config.loop_way).unwrap_or(ways.len());
+            let from = after(config.loop_way).unwrap_or(lengths.len());
             sets.loops.extend(visits(reference, i, from, config.loop_distance).map(|j| relation(i, j)));
         }
         Ok(sets)
@@ -81,12 +82,12 @@ impl RelationSets {
 }
 
 /// Distance travelled at each pose, m.
-fn ways(reference: &[(Stamp, Pose3)]) -> Vec<f64> {
+fn lengths(reference: &[(Stamp, Pose3)]) -> Vec<f64> {
     let steps = reference.windows(2).map(|pair| (pair[1].1.translation - pair[0].1.translation).norm());
-    let mut way = 0.0;
+    let mut length = 0.0;
     let rest = steps.map(|step| {
-        way += step;
-        way
+        length += step;
+        length
     });
     std::iter::once(0.0).take(reference.len()).chain(rest).collect()
 }
@@ -138,7 +139,7 @@ mod tests {
         assert_eq!((sets.near.len(), sets.far.len()), (321 - 2, 321 - 20));
         assert!((sets.near[0].relative.translation.x - 1.0).abs() < 1e-9);
         assert!((sets.far[0].relative.translation.x - 10.0).abs() < 1e-9);
-        // The first lap's poses are met once again, the start's twice: after one lap and after two.
+        // The poses of the first lap return once, the start twice: after one lap and after two.
         let from_start: Vec<_> = sets.loops.iter().filter(|r| r.from.nanos == 0).collect();
         assert_eq!(from_start.iter().map(|r| r.to.nanos / 1_000_000_000).collect::<Vec<_>>(), [160, 320]);
         assert!(from_start.iter().all(|r| r.relative.translation.norm() < 1e-9));

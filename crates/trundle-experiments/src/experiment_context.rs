@@ -80,7 +80,7 @@ impl RunSource {
         let Self::Shard(writer) = self else { return None };
         let dead = writer.dead();
         let (count, names) = (dead.len(), dead.join("', '"));
-        let problem = format!("{count} runs have died and are left out: '{names}'");
+        let problem = format!("{count} runs ended without a result and are left out: '{names}'");
         (count > 0).then_some(AppError::Environment(problem))
     }
 

@@ -135,7 +135,7 @@ fn scenarios() -> Vec<FaultScenario> {
         },
         FaultScenario {
             computer_fault: Some(ComputerFault::Restart(17.0)),
-            ..plain("killed and switched on again on the way", "demo", End::Arrived)
+            ..plain("killed and restarted during the drive", "demo", End::Arrived)
         },
     ]
 }

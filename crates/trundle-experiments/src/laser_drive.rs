@@ -110,7 +110,7 @@ pub fn drive(
     let mut wheels = WheelOdometry::new(config.kobuki.drive, OdometryConfig::default())?;
     let mut robot = Simulator::new(scene, config, seed).map_err(AppError::input)?;
     let (mut scans, mut odometry, mut truth) = (Vec::new(), Vec::new(), start);
-    let mut wander = Wander::new(seed);
+    let mut wander = RandomDriver::new(seed);
     while let Some(event) = robot.next_event().map_err(AppError::input)? {
         if event.stamp().as_secs() > seconds {
             break;
@@ -152,7 +152,7 @@ fn as_in_a_log(scan: Scan) -> Scan {
 }
 
 /// A driver without a goal.
-struct Wander {
+struct RandomDriver {
     rng: ChaCha8Rng,
     /// Turn rate in free space, rad/s, and the time of its next change, s.
     curve: (f64, f64),
@@ -161,7 +161,7 @@ struct Wander {
     is_turning: bool,
 }
 
-impl Wander {
+impl RandomDriver {
     fn new(seed: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let side = if rng.random_bool(0.5) { 1.0 } else { -1.0 };

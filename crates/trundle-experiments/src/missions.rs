@@ -15,7 +15,7 @@ use trundle_sim::import::UpAxis;
 use trundle_viz::{Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
 
 /// An experiment of this kind.
-struct Story {
+struct MissionExperiment {
     /// Name on the command line.
     name: &'static str,
     /// Title of the report.
@@ -25,14 +25,14 @@ struct Story {
 }
 
 /// The room of [Li18] with obstacles: a drive to its other end with mapping.
-const OBSTACLES: Story = Story {
+const OBSTACLES: MissionExperiment = MissionExperiment {
     name: "obstacles",
     title: "An unknown room with obstacles",
     subtitle: "The second experiment of Li, Wang, Yu: a room with obstacles is crossed while it is mapped.",
 };
 
 /// The furnished house of AWS RoboMaker: ten goals in six rooms.
-const HOUSE: Story = Story {
+const HOUSE: MissionExperiment = MissionExperiment {
     name: "house",
     title: "Ten goals in a furnished house",
     subtitle: "From an empty map to ten goals in six rooms of small_house (AWS RoboMaker).",
@@ -40,7 +40,7 @@ const HOUSE: Story = Story {
 
 /// The runs through an unknown place.
 pub struct MissionsOutcome {
-    story: &'static Story,
+    experiment: &'static MissionExperiment,
     /// A run for each seed.
     pub trials: Vec<Trial>,
 }
@@ -107,7 +107,7 @@ pub fn run_house(
 
 /// Executes one run per seed, with the scene and the mission of `story_of`.
 fn run_story(
-    story: &'static Story,
+    experiment: &'static MissionExperiment,
     request: &RunsRequest,
     context: &ExperimentContext,
     story_of: impl Fn(u64) -> Result<(Scene, Mission), AppError>,
@@ -117,7 +117,7 @@ fn run_story(
         Ok(TrialPlan::new(&format!("seed {seed}"), seed, scene, mission, &request.robot))
     };
     let plans = (1..=u64::from(request.seeds)).map(plan).collect::<Result<Vec<_>, _>>()?;
-    Ok(MissionsOutcome { story, trials: trial::run_all(plans, request, context)? })
+    Ok(MissionsOutcome { experiment, trials: trial::run_all(plans, request, context)? })
 }
 
 impl ExperimentReport for MissionsOutcome {
@@ -134,11 +134,12 @@ impl ExperimentReport for MissionsOutcome {
     }
 
     fn write(&self, folder: &OutputFolder) -> Result<(), AppError> {
-        let (story, trials, success) = (self.story, &self.trials, self.is_success());
+        let (experiment, trials, success) = (self.experiment, &self.trials, self.is_success());
         let text = self.verdict();
         let verdict = if success { Verdict::Ok(text) } else { Verdict::Failed(text) };
         let table = trials.iter().map(row).fold(Table::new("Runs", HEADER), Table::row);
-        let mut report = Report::new(story.title).subtitle(story.subtitle).verdict(verdict).table(table);
+        let mut report =
+            Report::new(experiment.title).subtitle(experiment.subtitle).verdict(verdict).table(table);
         for trial in trials {
             let png = picture(trial);
             folder.write(&format!("seed-{}.png", trial.seed), &png)?;
@@ -147,9 +148,9 @@ impl ExperimentReport for MissionsOutcome {
             let figure = Figure::png(&trial.name, &png).caption(&trial.numbers.verdict());
             report = report.figure(figure).table(trial.state_table());
         }
-        folder.write(&format!("{}.csv", story.name), csv(trials).as_bytes())?;
+        folder.write(&format!("{}.csv", experiment.name), csv(trials).as_bytes())?;
         folder.write("report.html", report.to_html().as_bytes())?;
-        folder.write("summary.json", summary(story, trials, success).to_json().as_bytes())?;
+        folder.write("summary.json", summary(experiment, trials, success).to_json().as_bytes())?;
         Ok(())
     }
 }
@@ -262,8 +263,8 @@ fn csv(trials: &[Trial]) -> String {
     table_csv(header, rows)
 }
 
-fn summary(story: &Story, trials: &[Trial], success: bool) -> Summary {
-    let mut summary = Summary::new(&format!("experiment {}", story.name));
+fn summary(experiment: &MissionExperiment, trials: &[Trial], success: bool) -> Summary {
+    let mut summary = Summary::new(&format!("experiment {}", experiment.name));
     let good = trials.iter().filter(|trial| trial.numbers.is_success()).count();
     summary
         .set("success", success)
@@ -280,7 +281,7 @@ mod tests {
     use crate::trial::fixtures::{arrived, under_way};
 
     fn outcome(trials: Vec<Trial>) -> MissionsOutcome {
-        MissionsOutcome { story: &OBSTACLES, trials }
+        MissionsOutcome { experiment: &OBSTACLES, trials }
     }
 
     #[test]

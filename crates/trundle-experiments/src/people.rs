@@ -158,7 +158,7 @@ fn csv(trials: &[Trial]) -> String {
     table_csv(header, rows)
 }
 
-const HEADER: [&str; 6] = ["run", "on the way at x, m", "from the side, m", "speed, m/s", "contacts", "end"];
+const HEADER: [&str; 6] = ["run", "on the path at x, m", "from the side, m", "speed, m/s", "contacts", "end"];
 
 fn report(trials: &[Trial], success: bool) -> Report {
     let verdict = if success { Verdict::Ok(verdict(trials)) } else { Verdict::Failed(verdict(trials)) };
@@ -178,7 +178,7 @@ fn report(trials: &[Trial], success: bool) -> Report {
     let bad = trials.iter().filter(|trial| !is_good(trial));
     let table = bad.map(row).fold(Table::new("Runs that did not end as they should", HEADER), Table::row);
     Report::new("People who step out")
-        .subtitle("A robot crosses a room at full speed; somebody steps into its way a metre before it.")
+        .subtitle("A robot crosses a room at full speed; a person steps onto its path 1 m ahead.")
         .verdict(verdict)
         .table(table.wide())
 }

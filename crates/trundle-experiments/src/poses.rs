@@ -24,7 +24,7 @@ const MEAN_TURN: f64 = 0.8 * std::f64::consts::PI / 180.0;
 struct Means {
     dx: f64,
     dy: f64,
-    most: f64,
+    max: f64,
     dtheta: f64,
     failed: usize,
 }
@@ -99,33 +99,33 @@ impl ExperimentReport for PosesOutcome {
 }
 
 const HEADER: [&str; 6] =
-    ["start", "mean |dx|, cm", "mean |dy|, cm", "most distance, cm", "mean |dtheta|, deg", "failed"];
+    ["start", "mean |dx|, cm", "mean |dy|, cm", "max distance, cm", "mean |dtheta|, deg", "failed"];
 
 impl Means {
     fn of<'a>(trials: impl IntoIterator<Item = &'a Trial>) -> Self {
-        let (mut sums, mut most, mut failed, mut n) = ([0.0; 3], 0.0_f64, 0, 0);
+        let (mut sums, mut max, mut failed, mut n) = ([0.0; 3], 0.0_f64, 0, 0);
         for trial in trials {
             failed += usize::from(!trial.numbers.is_success());
             if let Some(error) = &trial.numbers.goal_error {
                 n += 1;
-                most = most.max(error.distance);
+                max = max.max(error.distance);
                 for (sum, value) in sums.iter_mut().zip([error.dx, error.dy, error.dtheta]) {
                     *sum += value.abs();
                 }
             }
         }
         let [dx, dy, dtheta] = sums.map(|sum| sum / f64::from(n.max(1)));
-        Self { dx, dy, most, dtheta, failed }
+        Self { dx, dy, max, dtheta, failed }
     }
 
     fn within(&self) -> bool {
-        let near = self.dx <= MEAN_OFFSET && self.dy <= MEAN_OFFSET && self.most < MAX_GOAL_DISTANCE_M;
+        let near = self.dx <= MEAN_OFFSET && self.dy <= MEAN_OFFSET && self.max < MAX_GOAL_DISTANCE_M;
         near && self.dtheta <= MEAN_TURN && self.failed == 0
     }
 
     fn row(&self, name: &str) -> Vec<String> {
         let mut row = vec![name.to_owned()];
-        row.extend([self.dx, self.dy, self.most].map(|m| format!("{:.2}", m * 100.0)));
+        row.extend([self.dx, self.dy, self.max].map(|m| format!("{:.2}", m * 100.0)));
         row.extend([format!("{:.2}", self.dtheta.to_degrees()), self.failed.to_string()]);
         row
     }
@@ -137,7 +137,7 @@ impl Means {
              deg (at most 0.80), {} failed. [Li18] measured 0.43 cm, 1.12 cm, 3 cm, 2.16 deg on their robot.",
             self.dx * 100.0,
             self.dy * 100.0,
-            self.most * 100.0,
+            self.max * 100.0,
             self.dtheta.to_degrees(),
             self.failed
         )
@@ -180,10 +180,10 @@ fn report(trials: &[Trial], whole: &Means, paths: &[u8]) -> Report {
     let text = whole.verdict();
     let table = rows(trials).into_iter().fold(Table::new("Errors at the goal", HEADER), Table::row);
     let chart = |title: &str, unit: &str, value: fn(&Means) -> (f64, f64)| {
-        let bars = BarChart::new(title, unit, "mean", "most");
+        let bars = BarChart::new(title, unit, "mean", "max");
         let bar = |chart: BarChart, i: usize| {
-            let (mean, most) = value(&Means::of(of_start(trials, i)));
-            chart.row(&format!("start {}", i + 1), mean, most)
+            let (mean, max) = value(&Means::of(of_start(trials, i)));
+            chart.row(&format!("start {}", i + 1), mean, max)
         };
         Figure::bars(&(0..STARTS.len()).fold(bars, bar))
     };
@@ -192,10 +192,10 @@ fn report(trials: &[Trial], whole: &Means, paths: &[u8]) -> Report {
         .verdict(if whole.within() { Verdict::Ok(text) } else { Verdict::Failed(text) })
         .table(table)
         .section("Ways", "As figure 5 of the paper: planned and driven, of seed 1.")
-        .figure(Figure::png("Ways to the goal", paths).wide())
+        .figure(Figure::png("Paths to the goal", paths).wide())
         .section("Errors", "As figure 6 of the paper.")
         .figure(chart("Position: mean of |dx| and |dy|, and the largest distance", "cm", |m| {
-            ((m.dx + m.dy) * 50.0, m.most * 100.0)
+            ((m.dx + m.dy) * 50.0, m.max * 100.0)
         }))
         .figure(chart("Heading: mean |dtheta|", "deg", |m| (m.dtheta.to_degrees(), m.dtheta.to_degrees())))
 }
@@ -229,7 +229,7 @@ fn summary(trials: &[Trial], whole: &Means) -> Summary {
         .set("failed", whole.failed)
         .set("mean_abs_dx_m", whole.dx)
         .set("mean_abs_dy_m", whole.dy)
-        .set("max_distance_m", whole.most)
+        .set("max_distance_m", whole.max)
         .set("mean_abs_dtheta_rad", whole.dtheta);
     summary
 }

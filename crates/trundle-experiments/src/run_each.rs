@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn results_are_in_the_order_of_the_plans_and_the_first_refusal_is_told() {
+    fn results_are_in_the_order_of_the_plans_and_the_first_refusal_is_returned() {
         let double = |n: u32, _| if n < 9 { Ok(2 * n) } else { Err(AppError::Input(n.to_string())) };
         let run = |plans| run_each(plans, "runs", &ExperimentContext::default(), u32::to_string, double);
         assert_eq!(run(vec![3, 1, 2]).unwrap(), [6, 2, 4]);

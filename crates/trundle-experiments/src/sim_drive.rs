@@ -13,7 +13,7 @@ mod terminal;
 mod true_map;
 
 pub use drive::{SimDrive, drive_simulator};
-pub use driver::{ScriptDriver, SimDriver, Standing, WaypointDriver};
+pub use driver::{ScriptDriver, SimDriver, StillDriver, WaypointDriver};
 pub use key_driver::KeyDriver;
 pub use live_drive::LiveDrive;
 pub use numbers::{drive_rows, drive_summary, drive_verdict, recording_hint};

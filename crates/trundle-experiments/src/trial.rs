@@ -121,7 +121,7 @@ impl Trial {
             vec![format!("{:.1}", change.at), place, change.state.explained(change.transition)]
         };
         let title = format!("{}, seed {}", self.name, self.seed);
-        let table = Table::new(&title, ["time, s", "estimated place", "what it began to do"]);
+        let table = Table::new(&title, ["time, s", "estimated place", "first action"]);
         self.changes.iter().map(row).fold(table, Table::row).wide()
     }
 }

@@ -38,7 +38,7 @@ impl FleetLink {
     ///
     /// # Errors
     /// As [`FleetLink::start`]; when the password file or the robot's outline cannot be used, or the run accepts no commands.
-    pub fn beside(
+    pub fn for_run(
         setup: &RunSetup,
         link: &OperatorLink,
         is_steered: bool,

@@ -9,6 +9,13 @@
 //! | `home` | state, map picture, places and commands for a home; Home Assistant's discovery |
 //! | [`vda5050`] | orders and states of VDA 5050 2.1 for a master control |
 //! | `worker` | the thread that connects the parts |
+//!
+//! ```
+//! use trundle_fleet::{HomeCommand, read_home_command};
+//! assert_eq!(read_home_command(b"pause")?, HomeCommand::Pause);
+//! assert!(read_home_command(b"fly").is_err());
+//! # Ok::<(), String>(())
+//! ```
 
 mod address;
 mod broker;
@@ -20,7 +27,7 @@ mod options;
 mod places;
 mod robot_commands;
 mod robot_facts;
-mod robot_glance;
+mod robot_status;
 mod timestamp;
 pub mod vda5050;
 mod worker;
@@ -33,4 +40,4 @@ pub use options::{FleetOptions, Password, RobotName};
 pub use places::Places;
 pub use robot_commands::RobotCommands;
 pub use robot_facts::RobotFacts;
-pub use robot_glance::RobotGlance;
+pub use robot_status::RobotStatus;

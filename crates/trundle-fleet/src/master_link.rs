@@ -2,7 +2,7 @@
 
 use crate::broker::Publication;
 use crate::robot_commands::RobotCommands;
-use crate::robot_glance::RobotGlance;
+use crate::robot_status::RobotStatus;
 use crate::vda5050::limits::{MIN_STATE_PERIOD, MOVING_STATE_PERIOD, STATE_PERIOD, VISUALIZATION_PERIOD};
 use crate::vda5050::message::{
     ConnectionMessage, ConnectionState, Factsheet, HeaderCounter, Identity, Topic, VehicleState,
@@ -81,7 +81,7 @@ impl MasterLink {
         &mut self,
         topic: &str,
         payload: &[u8],
-        view: &RobotGlance,
+        view: &RobotStatus,
         robot: &mut dyn RobotCommands,
     ) -> bool {
         if topic == self.topic(Topic::Order) {
@@ -94,13 +94,13 @@ impl MasterLink {
         true
     }
 
-    /// Goes on with the order, also without a broker.
-    pub fn step(&mut self, passed: Duration, view: &RobotGlance, robot: &mut dyn RobotCommands) {
+    /// Continues the order, also without a broker.
+    pub fn step(&mut self, passed: Duration, view: &RobotStatus, robot: &mut dyn RobotCommands) {
         self.vehicle.step(passed, view, robot);
     }
 
     /// The messages that are due.
-    pub fn publications(&mut self, passed: Duration, view: &RobotGlance) -> Vec<Publication> {
+    pub fn publications(&mut self, passed: Duration, view: &RobotStatus) -> Vec<Publication> {
         self.since_state += passed;
         self.since_position += passed;
         let is_new = std::mem::take(&mut self.is_new);
@@ -122,7 +122,7 @@ impl MasterLink {
     }
 
     /// The state if it changed or a repetition is due.
-    fn due_state(&mut self, view: &RobotGlance) -> Option<Publication> {
+    fn due_state(&mut self, view: &RobotStatus) -> Option<Publication> {
         let is_wanted = self.vehicle.take_state_wish();
         if self.sent.is_some() && self.since_state < MIN_STATE_PERIOD && !is_wanted {
             return None;
@@ -144,7 +144,7 @@ impl MasterLink {
     }
 
     /// The position, often while the robot moves.
-    fn due_position(&mut self, view: &RobotGlance) -> Option<Publication> {
+    fn due_position(&mut self, view: &RobotStatus) -> Option<Publication> {
         let is_driving = self.sent.as_ref().is_some_and(|state| state.driving);
         let period = if is_driving { VISUALIZATION_PERIOD } else { STATE_PERIOD };
         if self.since_position < period {

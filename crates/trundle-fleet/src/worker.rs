@@ -4,7 +4,7 @@ use crate::broker::{Broker, BrokerEvent, SessionOptions};
 use crate::home::Home;
 use crate::master_link::MasterLink;
 use crate::vda5050::message::ConnectionState;
-use crate::{FleetOptions, RobotFacts, RobotGlance};
+use crate::{FleetOptions, RobotFacts, RobotStatus};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_app::operator::{Operator, RunView};
@@ -80,7 +80,7 @@ impl FleetWorker {
                 if !self.is_reported {
                     let address = &self.address;
                     tracing::warn!(
-                        "MQTT: no connection to {address} ({reason}): the robot goes on and tries again"
+                        "MQTT: no connection to {address} ({reason}): the robot continues and tries again"
                     );
                 }
                 (self.is_joined, self.is_reported) = (false, true);
@@ -91,10 +91,10 @@ impl FleetWorker {
 
     fn on_message(&mut self, topic: &str, payload: &[u8]) {
         // A command before the first view is ignored: the robot has no pose.
-        let Some(view) = self.operator.glance() else {
+        let Some(view) = self.operator.peek() else {
             return tracing::debug!("MQTT: a message before the first view");
         };
-        let view = RobotGlance::from(&*view);
+        let view = RobotStatus::from(&*view);
         if !self.master.on_message(topic, payload, &view, &mut self.operator) {
             self.home.on_message(topic, payload, &view, &mut self.operator);
         }
@@ -102,7 +102,7 @@ impl FleetWorker {
 
     fn step(&mut self, passed: Duration) {
         let Some(run) = self.view() else { return };
-        let view = RobotGlance::from(&*run);
+        let view = RobotStatus::from(&*run);
         self.master.step(passed, &view, &mut self.operator);
         if !self.is_joined {
             return;
@@ -121,6 +121,6 @@ impl FleetWorker {
 
     /// The newest view. The map is only requested when a picture is due.
     fn view(&self) -> Option<Arc<RunView>> {
-        if self.is_joined && self.home.wants_map() { self.operator.view() } else { self.operator.glance() }
+        if self.is_joined && self.home.wants_map() { self.operator.view() } else { self.operator.peek() }
     }
 }

@@ -8,7 +8,7 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MapperConfig {
-    /// Side of a cell, m, 0.005 to 1. Smaller cells show more detail and take more memory and time. Default 0.05.
+    /// Side of a cell, m, 0.005 to 1. Smaller cells show more detail and take more memory and time. Default 0.05 (ours).
     pub resolution: f64,
     /// Log-odds added by a hit, 0.01 to 10. A larger value draws new obstacles sooner, also false ones. Default 0.85: p = 0.7 (OctoMap,
     /// Hornung et al. 2013).
@@ -25,17 +25,17 @@ pub struct MapperConfig {
     pub occupied_above: f64,
     /// Probability below which a cell is published as free, 0 to 0.5. Default 0.196 (map_server).
     pub free_below: f64,
-    /// Maximum range of a ray, m, 0.1 to 200. Longer rays are truncated. Default 12.
+    /// Maximum range of a ray, m, 0.1 to 200. Longer rays are truncated. Default 12 (ours).
     pub max_range: f64,
     /// Blind range about the sensor, m, 0 to 10. Within the blind range a ray clears no cell with positive log-odds, and no cell behind
     /// such a cell: a low obstacle hides below the field of view there. Default 0.65: a Kinect V2, 0.45 m high, 8 deg down.
     /// `DepthScanner::blind_range` computes the value of a camera mount; a laser has 0.
     pub blind_range: f64,
     /// Maximum distance of two neighbouring hits on one surface, m, 0 (off) to 2. Cells between the two hits are not cleared by
-    /// grazing rays. Default 0.3.
+    /// grazing rays. Default 0.3 (ours).
     pub surface_gap: f64,
     /// Maximum extent of the map from its origin along x and along y, m, 1 to 2000 and at most 23000 cells. Rays that end beyond it
-    /// are ignored. Default 500.
+    /// are ignored. Default 500 (ours).
     pub half_extent: f64,
 }
 

@@ -42,7 +42,7 @@ const UNKNOWN_READOUT_PRESET: &str = "freiburg3";
 
 /// Which numbers the description of a camera holds; the others are assumed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct HeldNumbers {
+pub(crate) struct GivenNumbers {
     pub depth_scale: bool,
     pub readout: bool,
 }
@@ -97,14 +97,14 @@ impl CameraModel {
     }
 
     /// The camera of a preset or a file, and which of its numbers the description holds; the file is read once.
-    pub(crate) fn described(name: &str) -> Result<(Self, HeldNumbers), IoError> {
+    pub(crate) fn described(name: &str) -> Result<(Self, GivenNumbers), IoError> {
         if let Some(model) = Self::preset(name) {
-            return Ok((model, HeldNumbers { depth_scale: true, readout: name != UNKNOWN_READOUT_PRESET }));
+            return Ok((model, GivenNumbers { depth_scale: true, readout: name != UNKNOWN_READOUT_PRESET }));
         }
         let path = existing(name)?;
         let fields = Self::fields(path)?;
         let held =
-            HeldNumbers { depth_scale: fields.depth_scale.is_some(), readout: fields.readout.is_some() };
+            GivenNumbers { depth_scale: fields.depth_scale.is_some(), readout: fields.readout.is_some() };
         Ok((Self::of_fields(path, &fields)?, held))
     }
 
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_says_what_a_preset_says() {
+    fn a_file_holds_the_numbers_of_its_preset() {
         let parse = |text: &str| {
             let fields = toml_file::parse(Path::new("cam.toml"), text).unwrap();
             CameraModel::of_fields(Path::new("cam.toml"), &fields).unwrap()

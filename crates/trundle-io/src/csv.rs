@@ -25,11 +25,11 @@ pub fn waypoints_csv(points: &[Vector2]) -> String {
 
 /// A path as `s_m,x_m,y_m`: the distance along it and the point.
 pub fn curve_csv(path: &Path) -> String {
-    let mut way = 0.0;
+    let mut distance = 0.0;
     let points = path.points();
     let rows = points.iter().enumerate().map(|(i, p)| {
-        way += if i == 0 { 0.0 } else { (p - points[i - 1]).norm() };
-        [way, p.x, p.y]
+        distance += if i == 0 { 0.0 } else { (p - points[i - 1]).norm() };
+        [distance, p.x, p.y]
     });
     table_csv(["s_m", "x_m", "y_m"], rows)
 }

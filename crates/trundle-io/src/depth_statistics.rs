@@ -14,7 +14,7 @@ const TYPICAL_DEPTH_M: f64 = 2.0;
 /// Depth scales in use, units per metre: metres, 0.1 mm, mm, and TUM's 0.2 mm. Source: docs/formats.md.
 const KNOWN_SCALES: [f64; 4] = [1.0, 1000.0, 5000.0, 10_000.0];
 
-/// Largest number of a 16-bit depth image: what some cameras write for no reading, and more than which floats alone can hold. Source: the
+/// Largest number of a 16-bit depth image. Some cameras write it for no reading. Only floats can hold a larger one. Source: the
 /// range of `u16`.
 const MAX_UNITS: f64 = 65_535.0;
 /// Depth above which floats are in millimetres, m: no room is as large. Source: ours.

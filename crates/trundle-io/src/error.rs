@@ -170,7 +170,7 @@ fn incomplete_text(folder: Option<&Path>, problems: &[IoError]) -> String {
     format!("{first}{more}{rest}")
 }
 
-/// The operating system's answer in a person's words.
+/// The operating system's error in plain words.
 pub(crate) fn reason(error: &std::io::Error) -> String {
     let plain = match error.kind() {
         ErrorKind::NotFound => "it does not exist",

@@ -86,7 +86,7 @@ impl LaserLog {
         }
         if let Some(first) = self.first_bad_range {
             let problem = format!(
-                "{} ranges are negative, zero, infinite, not a number or below the laser's least range and taken as unseen, the first in",
+                "{} ranges are negative, zero, infinite, not a number or below the laser's minimum range and taken as unseen, the first in",
                 self.bad_ranges
             );
             warnings.add(&problem, &format!("entry {first}"));

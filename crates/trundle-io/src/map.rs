@@ -293,10 +293,10 @@ mod tests {
         std::fs::write(dir.path().join("m.png"), map_png(&grid).unwrap()).unwrap();
         let file = read_map_file(&path).unwrap();
         assert_eq!(file.grid, OccupancyGrid::from_ascii(0.05, "#...").unwrap());
-        let said: Vec<String> = file.warnings.iter().map(ToString::to_string).collect();
+        let message: Vec<String> = file.warnings.iter().map(ToString::to_string).collect();
         assert!(
-            said[0].starts_with("2 cells of pixel 205") && said[0].contains("free_thresh 0.25"),
-            "{said:?}"
+            message[0].starts_with("2 cells of pixel 205") && message[0].contains("free_thresh 0.25"),
+            "{message:?}"
         );
         let clear = image::RgbaImage::from_raw(2, 1, vec![0, 0, 0, 255, 0, 0, 0, 0]).unwrap();
         clear.save(dir.path().join("m.png")).unwrap();

@@ -2,7 +2,7 @@
 
 use crate::excerpt::excerpt;
 
-/// Most pixels of a map: 2^28, 819 m a side at 5 cm. Source: ours.
+/// Maximum number of pixels of a map: 2^28, 819 m a side at 5 cm. Source: ours.
 pub(crate) const MAX_PIXELS: usize = 1 << 28;
 
 /// A grey picture, row by row from the top.
@@ -103,8 +103,8 @@ impl<'a> Scanner<'a> {
     }
 
     fn text(&mut self, pixels: usize) -> Result<Vec<u16>, String> {
-        let most = self.bytes.len() / 2 + 1; // a digit and a blank each
-        let mut values = Vec::with_capacity(pixels.min(most));
+        let max = self.bytes.len() / 2 + 1; // a digit and a blank each
+        let mut values = Vec::with_capacity(pixels.min(max));
         for i in 0..pixels {
             let word = self.word();
             if word.is_empty() {

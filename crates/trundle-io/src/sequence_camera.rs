@@ -172,11 +172,15 @@ mod tests {
     #[test]
     fn a_folder_brings_its_camera_and_an_assumed_one_is_said() {
         let dir = tempfile::tempdir().unwrap();
-        let said =
+        let message =
             |camera: &SequenceCamera| camera.warnings.iter().map(ToString::to_string).collect::<String>();
         fs::write(dir.path().join("rgb.txt"), "1 a.png\n").unwrap();
         let assumed = SequenceCamera::choose(None, dir.path()).unwrap();
-        assert!(assumed.is_assumed && said(&assumed).contains("freiburg1 is assumed"), "{}", said(&assumed));
+        assert!(
+            assumed.is_assumed && message(&assumed).contains("freiburg1 is assumed"),
+            "{}",
+            message(&assumed)
+        );
         fs::write(dir.path().join("settings.yaml"), ORB_SLAM).unwrap();
         let own = SequenceCamera::choose(None, dir.path()).unwrap();
         assert!(!own.is_assumed && own.name.ends_with("settings.yaml") && own.warnings.is_empty());

@@ -12,6 +12,13 @@
 //! | `steering` | who holds the wheel; from a request to commands of the robot |
 //!
 //! The source of the page itself is `page/` (TypeScript); `assets/` holds it as built.
+//!
+//! ```
+//! let address: trundle_live::LiveAddress = "127.0.0.1:8700".parse()?;
+//! assert_eq!(address.to_string(), "127.0.0.1:8700");
+//! assert!("kitchen:8700".parse::<trundle_live::LiveAddress>().is_err());
+//! # Ok::<(), String>(())
+//! ```
 
 mod access;
 mod address;
@@ -20,11 +27,11 @@ mod history;
 mod http;
 mod options;
 mod page_state;
-mod roster;
 mod run_facts;
 mod server;
 mod steering;
 mod viewer;
+mod viewer_list;
 mod wire;
 
 pub use access::{Access, Tokens};

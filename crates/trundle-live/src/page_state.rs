@@ -1,9 +1,9 @@
 //! State that all viewers of a page share.
 
 use crate::history::History;
-use crate::roster::Roster;
 use crate::run_facts::RunFacts;
 use crate::steering::RunSteering;
+use crate::viewer_list::ViewerList;
 use crate::wire::MapTiles;
 use crate::{LiveOptions, Tokens};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -27,7 +27,7 @@ pub struct PageState {
     pub steering: RunSteering,
     /// Whether the program is about to end.
     end: watch::Sender<bool>,
-    roster: Mutex<Roster>,
+    viewer_list: Mutex<ViewerList>,
     tiles: Mutex<MapTiles>,
     history: Mutex<History>,
 }
@@ -43,13 +43,13 @@ impl PageState {
             is_shared: options.address.is_shared(),
             facts,
             end: watch::Sender::new(false),
-            roster: Mutex::default(),
+            viewer_list: Mutex::default(),
             tiles: Mutex::default(),
             history: Mutex::default(),
         }
     }
 
-    /// Tells all viewers that the program is about to end.
+    /// Informs all viewers that the program is about to end.
     pub fn end(&self) {
         self.end.send_replace(true);
     }
@@ -61,8 +61,8 @@ impl PageState {
     }
 
     /// The viewers.
-    pub fn roster(&self) -> MutexGuard<'_, Roster> {
-        self.roster.lock().unwrap_or_else(PoisonError::into_inner)
+    pub fn viewer_list(&self) -> MutexGuard<'_, ViewerList> {
+        self.viewer_list.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The newest map.

@@ -90,7 +90,7 @@ impl LivePage {
         }
         let before = if lines.is_empty() { "Live page," } else { " " };
         if let Some(link) = self.link(Access::View) {
-            lines.push(format!("{before} to look only: {link}"));
+            lines.push(format!("{before} to view only: {link}"));
         }
         if self.is_shared {
             let can =
@@ -113,7 +113,7 @@ impl Drop for LivePage {
         }
         if !thread.is_finished() {
             // The results of the run count more than the page: the thread ends with the program.
-            return tracing::warn!("the thread of the live page does not end and is left alone");
+            return tracing::warn!("the thread of the live page does not end and is abandoned");
         }
         if thread.join().is_err() {
             tracing::error!("the thread of the live page panicked");
@@ -145,7 +145,7 @@ async fn serve(listener: TcpListener, state: Arc<PageState>, ended: oneshot::Rec
 async fn say_goodbye(state: &PageState) {
     state.end();
     let all_gone = async {
-        while state.roster().count() > 0 {
+        while state.viewer_list().count() > 0 {
             tokio::time::sleep(END_CHECK_PERIOD).await;
         }
     };
@@ -158,7 +158,7 @@ async fn keep_history(state: &PageState) {
     ticks.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
     loop {
         ticks.tick().await;
-        if let Some(view) = state.operator.glance() {
+        if let Some(view) = state.operator.peek() {
             let run = state.operator.series().map_or(0, |series| series.number);
             state.history().add(&view, run);
         }

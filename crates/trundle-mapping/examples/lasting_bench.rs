@@ -29,9 +29,9 @@ fn room() -> FlatRoom {
 
 /// The pose after `k` steps around the room's middle, on ellipses that change slowly.
 fn pose(k: usize) -> Pose2 {
-    let way = k as f64 * STEP_M;
-    let radius = 2.4 + 0.4 * (way / 97.0).sin();
-    let angle = way / radius.max(2.0);
+    let distance = k as f64 * STEP_M;
+    let radius = 2.4 + 0.4 * (distance / 97.0).sin();
+    let angle = distance / radius.max(2.0);
     Pose2::new(1.2 * radius * angle.cos(), radius * angle.sin(), angle + TAU / 4.0)
 }
 

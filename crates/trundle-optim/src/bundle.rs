@@ -13,7 +13,7 @@ pub struct BundleConfig {
     pub steps: usize,
     /// Relative decrease of the cost below which the adjustment has converged, above 0. Default 1e-4: a local map is refined again soon.
     pub converged: f64,
-    /// Levenberg-Marquardt damping at the start, relative to the diagonal, above 0. Default 1e-4.
+    /// Levenberg-Marquardt damping at the start, relative to the diagonal, above 0. Default 1e-4 (ours).
     pub damping: f64,
     /// Whether the covariances of the poses are computed at the end, at the cost of one or two steps. Default false.
     pub covariances: bool,

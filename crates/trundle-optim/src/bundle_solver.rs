@@ -46,20 +46,35 @@ pub struct BundleSolver {
     rows: Vec<u32>,
     constraints: Vec<PoseConstraint>,
     pairs: Vec<(usize, usize)>,
-    phase: Phase,
-    /// Progress of the phase: a point, or a row.
-    cursor: usize,
+    progress: Progress,
     damping: f64,
-    cost: f64,
-    initial_cost: f64,
-    /// Sum over the points so far, in the present phase.
-    partial_cost: f64,
+    costs: Costs,
     steps: usize,
     chi2: Vec<f64>,
     /// State of the poses' covariances: in computation, or done.
     ending: Ending,
 }
 
+/// Phase of a step, and its progress.
+#[derive(Debug, Clone, Copy, Default)]
+struct Progress {
+    phase: Phase,
+    /// Next point or row of the phase.
+    cursor: usize,
+}
+
+/// Robust costs.
+#[derive(Debug, Clone, Copy, Default)]
+struct Costs {
+    /// At the present state.
+    present: f64,
+    /// Of the problem as given.
+    initial: f64,
+    /// Sum over the points so far, in the present phase.
+    partial: f64,
+}
+
+/// State of the covariances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Ending {
     #[default]
@@ -108,13 +123,13 @@ impl BundleSolver {
         here.poses.clear();
         here.poses.extend(problem.poses.iter().map(|p| p.world_from_camera));
         here.points.clone_from(&problem.points);
-        here.look(rows);
+        here.compute_views(rows);
         self.there.poses.clone_from(&here.poses);
         self.there.points.clone_from(&here.points);
         self.normal.fit(&self.layout, problem.points.len());
         self.chi2.clear();
         self.chi2.resize(problem.observations.len(), f64::INFINITY);
-        (self.damping, self.steps, self.cost) = (config.damping, 0, f64::INFINITY);
+        (self.damping, self.steps, self.costs.present) = (config.damping, 0, f64::INFINITY);
         self.ending = Ending::Refining;
         self.enter(Phase::Linearise);
     }
@@ -122,10 +137,10 @@ impl BundleSolver {
     /// Continues for about `work` units, some 20 ns each; `true` at the end.
     pub fn advance(&mut self, work: usize) -> bool {
         let mut left = isize::try_from(work).unwrap_or(isize::MAX);
-        while self.phase != Phase::Done && left > 0 {
+        while self.progress.phase != Phase::Done && left > 0 {
             left -= self.work_on() as isize;
         }
-        self.phase == Phase::Done
+        self.progress.phase == Phase::Done
     }
 
     /// Goes on to the end.
@@ -163,12 +178,12 @@ impl BundleSolver {
 
     /// Robust cost of the problem as given.
     pub fn initial_cost(&self) -> f64 {
-        self.initial_cost
+        self.costs.initial
     }
 
     /// Robust cost at the present state.
     pub fn cost(&self) -> f64 {
-        self.cost
+        self.costs.present
     }
 
     /// Steps tried.
@@ -199,7 +214,8 @@ impl BundleSolver {
     }
 
     fn enter(&mut self, phase: Phase) {
-        (self.phase, self.cursor, self.partial_cost) = (phase, 0, 0.0);
+        self.progress = Progress { phase, cursor: 0 };
+        self.costs.partial = 0.0;
         match phase {
             Phase::Linearise => self.normal.clear(),
             Phase::Eliminate => self.normal.begin_reduced(self.damping),
@@ -210,7 +226,7 @@ impl BundleSolver {
 
     /// Runs one piece of work; returns its units.
     fn work_on(&mut self) -> usize {
-        match self.phase {
+        match self.progress.phase {
             Phase::Linearise => self.linearise(),
             Phase::Eliminate => self.eliminate(),
             Phase::Factorise => self.factorise(),
@@ -225,8 +241,8 @@ impl BundleSolver {
     fn chunk(&mut self) -> (std::ops::Range<usize>, bool) {
         const POINTS_PER_CHUNK: usize = 32;
         let count = self.here.points.len();
-        let range = self.cursor..(self.cursor + POINTS_PER_CHUNK).min(count);
-        self.cursor = range.end;
+        let range = self.progress.cursor..(self.progress.cursor + POINTS_PER_CHUNK).min(count);
+        self.progress.cursor = range.end;
         (range.clone(), range.end == count)
     }
 
@@ -239,7 +255,7 @@ impl BundleSolver {
         for index in points.clone() {
             let point = (index, &self.here.points[index].into());
             let Self { normal, layout, here, lens, .. } = self;
-            self.partial_cost += if self.ending == Ending::WorkingOut {
+            self.costs.partial += if self.ending == Ending::WorkingOut {
                 normal.linearise(point, layout, &here.views, lens, certain)
             } else {
                 normal.linearise(point, layout, &here.views, lens, refining)
@@ -247,11 +263,11 @@ impl BundleSolver {
         }
         if last {
             for constraint in &self.constraints {
-                self.partial_cost +=
+                self.costs.partial +=
                     self.normal.add_constraint(constraint, &self.here.poses, &self.here.views);
             }
             if self.steps == 0 {
-                (self.cost, self.initial_cost) = (self.partial_cost, self.partial_cost);
+                (self.costs.present, self.costs.initial) = (self.costs.partial, self.costs.partial);
             }
             self.enter(Phase::Eliminate);
         }
@@ -271,8 +287,8 @@ impl BundleSolver {
     }
 
     fn factorise(&mut self) -> usize {
-        let row = self.cursor;
-        self.cursor += 1;
+        let row = self.progress.cursor;
+        self.progress.cursor += 1;
         let reduced = &mut self.normal.reduced;
         if row < reduced.count() {
             let work = reduced.row_work(row) * WORK_PER_PRODUCT;
@@ -293,7 +309,7 @@ impl BundleSolver {
             let step = self.normal.step_of(*row);
             self.there.poses[i] = (self.here.poses[i] * Pose3::exp(step)).renormalized();
         }
-        self.there.look(&self.rows);
+        self.there.compute_views(&self.rows);
         self.enter(Phase::Move);
         reduced_work(self.rows.len())
     }
@@ -306,13 +322,13 @@ impl BundleSolver {
             self.there.points[index] = point;
             for seen in &self.layout.seen[self.layout.of_point(index)] {
                 let chi2 = self.lens.chi2(&self.there.views[seen.pose as usize], seen, &point.into());
-                self.partial_cost += robust(chi2, seen.bound).0;
+                self.costs.partial += robust(chi2, seen.bound).0;
             }
         }
         let work = self.observations(&points);
         if last {
             let cost = |constraint: &PoseConstraint| robust(constraint.chi2(&self.there.poses), CHI2_95_6).0;
-            self.partial_cost += self.constraints.iter().map(cost).sum::<f64>();
+            self.costs.partial += self.constraints.iter().map(cost).sum::<f64>();
             self.decide();
         }
         work
@@ -320,14 +336,14 @@ impl BundleSolver {
 
     /// Accepts or rejects the step.
     fn decide(&mut self) {
-        if self.partial_cost > self.cost {
+        if self.costs.partial > self.costs.present {
             return self.refuse();
         }
-        let gain = self.cost - self.partial_cost;
-        self.cost = self.partial_cost;
+        let gain = self.costs.present - self.costs.partial;
+        self.costs.present = self.costs.partial;
         std::mem::swap(&mut self.here, &mut self.there);
         self.damping = (self.damping * 0.1).max(1e-9);
-        let converged = gain <= self.config.converged * self.cost;
+        let converged = gain <= self.config.converged * self.costs.present;
         self.enter(if converged || self.steps >= self.config.steps {
             Phase::Judge
         } else {
@@ -379,7 +395,7 @@ impl BundleSolver {
 
 impl State {
     /// Brings the views up to date with the poses.
-    fn look(&mut self, rows: &[u32]) {
+    fn compute_views(&mut self, rows: &[u32]) {
         self.views.clear();
         self.views.extend(self.poses.iter().zip(rows).map(|(pose, row)| View::of(pose, *row)));
     }

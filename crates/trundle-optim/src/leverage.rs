@@ -17,15 +17,15 @@ const LEVERAGE_TOLERANCE: f64 = 1.1;
 pub(crate) fn bounded(rows: &[Matrix3x6<f64>]) -> Vec<f64> {
     let mut weights = vec![1.0; rows.len()];
     let counted = rows.iter().filter(|row| **row != Matrix3x6::zeros()).count();
-    let most = MAX_LEVERAGE.max(MAX_LEVERAGE_OF_MEAN * 6.0 / counted.max(1) as f64);
+    let max = MAX_LEVERAGE.max(MAX_LEVERAGE_OF_MEAN * 6.0 / counted.max(1) as f64);
     for _ in 0..MAX_PASSES {
         let information = sum(rows, &weights);
         let Some(covariance) = information.cholesky().map(|c| c.inverse()) else { break };
         let mut is_bounded = true;
         for (row, weight) in rows.iter().zip(&mut weights) {
             let leverage = *weight * (row * covariance).component_mul(row).sum();
-            if leverage > most * LEVERAGE_TOLERANCE {
-                *weight *= most / leverage;
+            if leverage > max * LEVERAGE_TOLERANCE {
+                *weight *= max / leverage;
                 is_bounded = false;
             }
         }
@@ -54,7 +54,11 @@ mod tests {
     fn points_confirmed_by_others_have_full_weight() {
         assert_eq!(bounded(&rows(10)), vec![1.0; 30]);
         assert_eq!(bounded(&[]), Vec::<f64>::new());
-        assert_eq!(bounded(&rows(1)[..1]), vec![1.0], "of what tells no pose nothing is asked");
+        assert_eq!(
+            bounded(&rows(1)[..1]),
+            vec![1.0],
+            "points without information about a pose have full weight"
+        );
     }
 
     #[test]

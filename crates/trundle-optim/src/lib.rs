@@ -1,4 +1,4 @@
-//! Robust least squares on SE(3) over what an RGB-D camera measures of points.
+//! Robust least squares on SE(3) over an RGB-D camera's measurements of points.
 //!
 //! [`PoseProblem`] refines one camera pose against known points (tracking). [`BundleProblem`] refines several poses and the points together
 //! by the Schur complement (bundle adjustment, Triggs et al. 2000). [`PoseGraph`] distributes the correction of a closed loop over poses
@@ -12,7 +12,7 @@
 //! use trundle_core::{Pose3, Vector3};
 //! use trundle_optim::{PoseConstraint, PoseGraph, PoseGraphConfig};
 //!
-//! // Four poses along a line by odometry, each step 0.1 m too long, and a loop closure that says 3 m.
+//! // Four poses along a line by odometry, each step 0.1 m too long, and a loop closure that measures 3 m.
 //! let at = |x: f64| Pose3::new(UnitQuaternion::identity(), Vector3::x() * x);
 //! let constraint = |from, to, length| PoseConstraint { from, to, from_to: at(length), information: Matrix6::identity() };
 //! let mut constraints: Vec<PoseConstraint> = (0..3).map(|i| constraint(i, i + 1, 1.1)).collect();

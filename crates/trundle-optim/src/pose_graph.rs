@@ -11,9 +11,9 @@ use trundle_core::{Invalid, Pose3, Vector3, require_positive};
 pub struct PoseGraphConfig {
     /// Maximum number of steps of the pose graph, 1 or more. Default 20 \[MurArtal17\].
     pub steps: usize,
-    /// Relative decrease of the cost below which the pose graph has converged, above 0. Default 1e-6.
+    /// Relative decrease of the cost below which the pose graph has converged, above 0. Default 1e-6 (ours).
     pub converged: f64,
-    /// Levenberg-Marquardt damping at the start, relative to the diagonal, above 0. Default 1e-6.
+    /// Levenberg-Marquardt damping at the start, relative to the diagonal, above 0. Default 1e-6 (ours).
     pub damping: f64,
 }
 

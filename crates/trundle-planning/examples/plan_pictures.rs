@@ -118,7 +118,7 @@ fn main() {
     let plan = support::found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
     field(&grid);
     potential(&grid, goal.position());
-    way(&grid, &plan);
+    trajectory(&grid, &plan);
     speeds(&plan);
     outline();
     obstacles();
@@ -158,7 +158,7 @@ fn potential(grid: &OccupancyGrid, goal: Vector2) {
     picture.save("potential");
 }
 
-fn way(grid: &OccupancyGrid, plan: &PlanResult) {
+fn trajectory(grid: &OccupancyGrid, plan: &PlanResult) {
     let mut picture = Picture::of(grid);
     for curve in plan.curves() {
         for planes in curve.corridors() {

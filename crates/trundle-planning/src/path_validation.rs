@@ -52,7 +52,7 @@ impl ShapeEscape {
         let reach = shape.radius + 4.0 * around.geometry().resolution;
         let field = DistanceField::up_to(reach, around, unknown);
         let depth = shape.overlap(&field, pose, max_overlap(shape));
-        let shape = shape.leaving(&field, pose, depth + DISC_REDUCTION_M)?;
+        let shape = shape.escaping(&field, pose, depth + DISC_REDUCTION_M)?;
         (shape.gap(&field, pose, DISC_REDUCTION_M) > 0.0).then_some(Self { field, shape })
     }
 }
@@ -83,7 +83,7 @@ pub(crate) fn validate_layers(
         return Err(obstruction(from, last.pose));
     }
     let is_free = |pose| match &escape {
-        Some(escape) if escape.shape.is_leaving(pose) => {
+        Some(escape) if escape.shape.is_escaping(pose) => {
             escape.shape.gap(&escape.field, pose, DISC_REDUCTION_M) > 0.0
         }
         _ => clearance(pose) >= required,

@@ -71,7 +71,8 @@ impl RosClock {
         let newest = clock.newest.fetch_max(time.nanos, Ordering::Relaxed);
         let back = if newest == NOT_BEGUN { 0.0 } else { Stamp::from_nanos(newest) - time };
         if back > RESTART_S {
-            let expected = "a clock that goes on: the simulator was started anew, start trundle anew as well";
+            let expected =
+                "a clock that does not run backward: the simulator was restarted, restart trundle as well";
             return Err(Invalid::new("clock", format!("{back:.1} s back"), "", expected));
         }
         Ok(())

@@ -34,8 +34,8 @@ fn way_out(footprint: &Footprint, direction: Vector2) -> f64 {
             let sides = corners.iter().zip(corners.iter().cycle().skip(1));
             let crossing = |(a, b): (&Vector2, &Vector2)| {
                 let (side, across) = (b - a, direction.perp(&(b - a)));
-                let (way, part) = (a.perp(&side) / across, a.perp(&direction) / across);
-                (way >= 0.0 && (0.0..=1.0).contains(&part)).then_some(way)
+                let (distance, part) = (a.perp(&side) / across, a.perp(&direction) / across);
+                (distance >= 0.0 && (0.0..=1.0).contains(&part)).then_some(distance)
             };
             sides.filter_map(crossing).fold(0.0, f64::max)
         }

@@ -229,7 +229,7 @@ mod tests {
     }
 
     /// The checkpoint of `memory` with changed bytes and a correct checksum.
-    fn resigned(change: impl FnOnce(&mut Vec<u8>)) -> Result<Checkpoint, CheckpointError> {
+    fn with_new_checksum(change: impl FnOnce(&mut Vec<u8>)) -> Result<Checkpoint, CheckpointError> {
         let mut rest = memory().to_bytes().split_off(16);
         change(&mut rest);
         let checksum = crc32fast::hash(&rest).to_le_bytes();
@@ -246,7 +246,7 @@ mod tests {
             let cells = rest.split_off(4 + length);
             *rest = [(notes.len() as u32).to_le_bytes().to_vec(), notes, cells].concat();
         };
-        resigned(change).unwrap_err()
+        with_new_checksum(change).unwrap_err()
     }
 
     #[test]
@@ -269,14 +269,15 @@ mod tests {
     #[test]
     fn a_cell_that_is_none_of_the_three_is_refused() {
         let length = memory().to_bytes().len() - 16;
-        let error = resigned(|rest| rest[length - 101] = 3).unwrap_err();
+        let error = with_new_checksum(|rest| rest[length - 101] = 3).unwrap_err();
         assert_eq!(error.to_string(), "checkpoint is damaged: a cell is none");
     }
 
     #[test]
     fn a_length_beyond_the_end_is_refused() {
         for length in [u32::MAX, 100_000] {
-            let error = resigned(|rest| rest[..4].copy_from_slice(&length.to_le_bytes())).unwrap_err();
+            let error =
+                with_new_checksum(|rest| rest[..4].copy_from_slice(&length.to_le_bytes())).unwrap_err();
             assert_eq!(error, CheckpointError::Damaged { what: "it is cut off" });
         }
     }
@@ -287,7 +288,7 @@ mod tests {
             changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
             cut in prop::option::of(any::<prop::sample::Index>()),
         ) {
-            let read = resigned(|rest| {
+            let read = with_new_checksum(|rest| {
                 changes.iter().for_each(|(at, byte)| *at.get_mut(rest) = *byte);
                 cut.into_iter().for_each(|cut| rest.truncate(cut.index(rest.len())));
             });

@@ -127,9 +127,9 @@ impl Default for RobotConfig {
 impl RobotConfig {
     /// Refuses a base with a top speed above the odometry's limit: at full speed all readings would be rejected.
     pub(crate) fn require_believable_speeds(&self) -> Result<(), Invalid> {
-        let least = self.limits.wheel_speed;
-        if self.odometry.max_speed < least {
-            let expected = format!("limits.wheel_speed or more, {least} m/s");
+        let min = self.limits.wheel_speed;
+        if self.odometry.max_speed < min {
+            let expected = format!("limits.wheel_speed or more, {min} m/s");
             return Err(Invalid::new("odometry.max_speed", self.odometry.max_speed, "m/s", expected));
         }
         Ok(())

@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_places_that_look_alike_it_takes_neither() {
+    fn of_two_look_alike_places_neither_is_accepted() {
         let square = room(60, 60, &[]);
         assert_eq!(found(&square, &square, (Pose2::new(1.2, 0.9, 0.4), true)), None);
     }

@@ -9,7 +9,7 @@ pub struct Histogram {
     bins: Vec<u32>,
     count: u64,
     sum: f64,
-    most: f64,
+    max: f64,
 }
 
 /// Lower end of the first bin. Source: ours.
@@ -30,7 +30,7 @@ impl Histogram {
         self.bins[bin.min(BIN_COUNT - 1)] += 1;
         self.count += 1;
         self.sum += value;
-        self.most = self.most.max(value);
+        self.max = self.max.max(value);
     }
 
     /// Adds the counts of `other`.
@@ -42,7 +42,7 @@ impl Histogram {
         self.bins.iter_mut().zip(&other.bins).for_each(|(mine, theirs)| *mine += theirs);
         self.count += other.count;
         self.sum += other.sum;
-        self.most = self.most.max(other.most);
+        self.max = self.max.max(other.max);
     }
 
     /// Number of counted values.
@@ -56,8 +56,8 @@ impl Histogram {
     }
 
     /// Maximum of the counted values; `None` if no value was counted.
-    pub fn most(&self) -> Option<f64> {
-        (self.count > 0).then_some(self.most)
+    pub fn max(&self) -> Option<f64> {
+        (self.count > 0).then_some(self.max)
     }
 
     /// The quantile: the part `fraction` (0 to 1) of all values does not exceed it; `None` if no value was counted.
@@ -68,7 +68,7 @@ impl Histogram {
             below += u64::from(n);
             below > rank
         })?;
-        Some((FIRST_BIN_START * BIN_RATIO.powf(bin as f64 + 0.5)).min(self.most))
+        Some((FIRST_BIN_START * BIN_RATIO.powf(bin as f64 + 0.5)).min(self.max))
     }
 }
 
@@ -87,17 +87,17 @@ mod tests {
             let ratio = odd.quantile(fraction).unwrap() / (fraction * 10_000.0);
             assert!((ratio - 1.0).abs() < 0.0101, "{fraction}: {ratio}");
         }
-        assert_eq!((odd.count(), odd.sum(), odd.most()), (10_000, 50_005_000.0, Some(10_000.0)));
+        assert_eq!((odd.count(), odd.sum(), odd.max()), (10_000, 50_005_000.0, Some(10_000.0)));
     }
 
     #[test]
     fn nothing_has_no_quantile_and_extremes_have_a_place() {
         let mut all = Histogram::default();
-        assert_eq!((all.quantile(0.5), all.most()), (None, None));
+        assert_eq!((all.quantile(0.5), all.max()), (None, None));
         for value in [0.0, 1e9, f64::NAN] {
             all.note(value);
         }
-        assert_eq!((all.count(), all.most()), (2, Some(1e9)));
+        assert_eq!((all.count(), all.max()), (2, Some(1e9)));
         assert!(all.quantile(0.0).unwrap() < 1.1e-6 && all.quantile(1.0).unwrap() > 0.9e6);
     }
 }

@@ -3,6 +3,16 @@
 //! [`Robot`] is one value with one `step`: a sensor event in, a [`StepReport`] out. Only this crate connects SLAM, mapping, localization,
 //! planning, control and docking, by core types. Time is that of the data: the stamps and the [`Schedule`] decide when each stage runs, so
 //! a replayed recording gives the same reports.
+//!
+//! ```
+//! use trundle_core::{SensorEvent, Stamp, WheelTicks};
+//! use trundle_runtime::{Robot, RobotConfig};
+//! let mut robot = Robot::new(RobotConfig::default())?;
+//! let wheels = WheelTicks { stamp: Stamp::from_nanos(0), left: 0, right: 0 };
+//! let report = robot.step(&SensorEvent::Wheels(wheels));
+//! assert!(report.twist.is_none_or(|twist| twist.v == 0.0), "a robot without a goal rests");
+//! # Ok::<(), trundle_core::Invalid>(())
+//! ```
 
 mod behaviour;
 mod bumper;

@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_say_what_became_of_a_task() {
+    fn ends_describe_the_outcome_of_a_task() {
         let reason = || Reason::PoseUnknown;
         assert_eq!(TaskEnd::Done.to_string(), "done");
         assert!(TaskEnd::PutOff { reason: reason() }.to_string().starts_with("put off: the pose is unknown"));

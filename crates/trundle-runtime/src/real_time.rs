@@ -40,7 +40,7 @@
 //!         worker_threads.give(job);
 //!     }
 //! }
-//! base(Twist2::ZERO); // nothing came for 0.2 s
+//! base(Twist2::ZERO); // no command for 0.2 s
 //! # drop(sender);
 //! # Ok(()) }
 //! ```

@@ -8,7 +8,7 @@ use trundle_core::{Pose2, Pose3, Stamp};
 pub(crate) struct ScanPoseLog {
     visual: BTreeMap<Stamp, Pose3>,
     /// Number of poses at which the log is thinned; 0 means [`MIN_KEPT_POSES`].
-    most: usize,
+    max: usize,
 }
 
 /// Number of stored scan poses above which the log is thinned. Source: ours.
@@ -23,11 +23,11 @@ impl ScanPoseLog {
         visual_from_camera: Pose3,
         kept: impl FnOnce() -> I,
     ) -> bool {
-        let is_thinned = self.visual.len() >= self.most.max(MIN_KEPT_POSES);
+        let is_thinned = self.visual.len() >= self.max.max(MIN_KEPT_POSES);
         if is_thinned {
             let kept: BTreeSet<Stamp> = kept().collect();
             self.visual.retain(|stamp, _| kept.contains(stamp));
-            self.most = 2 * self.visual.len();
+            self.max = 2 * self.visual.len();
         }
         self.visual.insert(stamp, visual_from_camera);
         is_thinned

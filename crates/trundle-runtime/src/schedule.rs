@@ -50,7 +50,7 @@ impl Ticker {
     }
 
     /// Makes the stage due at the next query.
-    pub(crate) fn hurry(&mut self) {
+    pub(crate) fn make_due(&mut self) {
         self.last = None;
     }
 
@@ -103,7 +103,7 @@ mod tests {
         let mut ticker = Ticker::new(5.0);
         assert!((0..3).all(|_| ticker.will_be_due(Stamp::default())));
         assert!(ticker.due(Stamp::default()) && !ticker.due(Stamp::default().after(0.1)));
-        ticker.hurry();
+        ticker.make_due();
         assert!(ticker.due(Stamp::default().after(0.11)));
         assert!(!ticker.will_be_due(Stamp::default().after(0.3)), "counted from the last time");
     }

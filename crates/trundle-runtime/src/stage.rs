@@ -140,7 +140,7 @@ impl StageTimes {
             median_ms: spent.quantile(0.5)?,
             p99_ms: spent.quantile(0.99)?,
             p999_ms: spent.quantile(0.999)?,
-            max_ms: spent.most()?,
+            max_ms: spent.max()?,
             total_s: spent.sum() * 1e-3,
         })
     }

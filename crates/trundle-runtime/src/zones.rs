@@ -150,8 +150,8 @@ impl RobotZones {
     /// Whether the robot leaves a zone: it was too deep in the zone for plans with the zone as an obstacle, and is not out yet.
     fn leaves(&self, zone: &Zone, lattice: &GridGeometry, pose: Pose2) -> bool {
         let overlap = self.check.overlap_with_zone(zone, lattice, pose);
-        let is_leaving = self.left.contains(&zone.id);
-        overlap > if is_leaving { 0.0 } else { self.escape }
+        let is_escaping = self.left.contains(&zone.id);
+        overlap > if is_escaping { 0.0 } else { self.escape }
     }
 
     /// A grid with all no-go zones occupied except those that contain the robot.

@@ -69,7 +69,7 @@ fn cast_all(world: &World, camera: &PinholeCamera, pose: &Pose3) {
     }
 }
 
-/// The least (wall, CPU) seconds of some runs.
+/// The smallest (wall, CPU) seconds of some runs.
 fn best(runs: usize, mut run: impl FnMut()) -> (f64, f64) {
     let mut best = (f64::INFINITY, f64::INFINITY);
     for _ in 0..runs.max(1) {

@@ -41,7 +41,7 @@ pub use laser::LaserConfig;
 pub use materials::{Finish, Paint};
 pub use people::Person;
 pub use scenes::{Scene, plain_room};
-pub use simulator::{CameraAside, Shot, SimError, Simulator};
+pub use simulator::{DetachedCamera, Shot, SimError, Simulator};
 pub use world::{
     Cuboid, Cylinder, HeightBand, Hit, Lamp, Lights, Material, Mesh, Mover, Obstacles, SceneSnapshot, Shape,
     Solid, Target, Triangle, World,

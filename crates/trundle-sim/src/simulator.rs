@@ -15,7 +15,7 @@ use crate::laser::Laser;
 use crate::people::Crowd;
 use crate::scenes::Scene;
 use crate::world::{HeightBand, Obstacles, SceneSnapshot};
-pub use camera::{CameraAside, Shot};
+pub use camera::{DetachedCamera, Shot};
 use camera_rig::CameraRig;
 use clock::Clock;
 pub use error::SimError;
@@ -42,10 +42,7 @@ pub struct Simulator {
     obstacles: Obstacles,
     crowd: Crowd,
     body: Kobuki,
-    /// `None` after the camera was detached.
-    rig: Option<CameraRig>,
-    /// Shots not yet taken by the detached camera.
-    shots: Vec<Shot>,
+    camera: CameraState,
     laser: Option<Laser>,
     /// None in a scene without a charging station.
     station: Option<StationSensing>,
@@ -55,9 +52,26 @@ pub struct Simulator {
     now: u64,
     clocks: Clocks,
     last_readings: LastReadings,
-    queue: VecDeque<SensorEvent>,
-    latency: LatencyQueue,
+    outgoing: Outgoing,
     refused_commands: u32,
+}
+
+/// The camera of the simulator.
+#[derive(Debug)]
+struct CameraState {
+    /// `None` after the camera was detached.
+    rig: Option<CameraRig>,
+    /// Shots not yet taken by the detached camera.
+    shots: Vec<Shot>,
+}
+
+/// Events on their way out of the simulator.
+#[derive(Debug, Default)]
+struct Outgoing {
+    /// Events that arrived, in order.
+    queue: VecDeque<SensorEvent>,
+    /// Delayed events.
+    latency: LatencyQueue,
 }
 
 /// Due times of the sensors.
@@ -111,8 +125,7 @@ impl Simulator {
             obstacles,
             crowd,
             body: Kobuki::new(&config.kobuki, scene.start, seed)?,
-            rig: Some(CameraRig::new(&config, seed)?),
-            shots: Vec::new(),
+            camera: CameraState { rig: Some(CameraRig::new(&config, seed)?), shots: Vec::new() },
             laser: config.laser.clone().map(|laser| Laser::new(laser, seed)),
             station: scene.station.map(|station| StationSensing::new(config.station, station, seed)),
             faults: Faults::new(config.faults.clone(), seed),
@@ -120,8 +133,7 @@ impl Simulator {
             now: 0,
             clocks,
             last_readings: LastReadings::default(),
-            queue: VecDeque::new(),
-            latency: LatencyQueue::default(),
+            outgoing: Outgoing::default(),
             refused_commands: 0,
             scene: Arc::new(scene),
             config,
@@ -230,13 +242,13 @@ impl Simulator {
         if wheels.is_some()
             && let Some(over_edge) = self.body.look_for_cliffs(&self.scene.world)
         {
-            self.queue.push_back(SensorEvent::Cliff(Cliff { stamp, over_edge }));
+            self.outgoing.queue.push_back(SensorEvent::Cliff(Cliff { stamp, over_edge }));
         }
         if wheels.is_some() {
             self.read_station(stamp);
         }
         if wheels.or(scan).or(image).is_some() {
-            self.queue.push_back(SensorEvent::Truth { stamp, pose: self.body.pose() });
+            self.outgoing.queue.push_back(SensorEvent::Truth { stamp, pose: self.body.pose() });
         }
         if let Some(scan) = scan {
             self.read_laser(stamp, scan)?;
@@ -244,7 +256,7 @@ impl Simulator {
         if let Some(frame) = image {
             self.read_camera(stamp, frame)?;
         }
-        self.latency.arrive(self.now, &mut self.queue);
+        self.outgoing.latency.arrive(self.now, &mut self.outgoing.queue);
         Ok(())
     }
 
@@ -254,7 +266,7 @@ impl Simulator {
             (ticks.left, ticks.right) = self.last_readings.counters.unwrap_or((ticks.left, ticks.right));
         }
         self.last_readings.counters = Some((ticks.left, ticks.right));
-        self.queue.push_back(SensorEvent::Wheels(ticks));
+        self.outgoing.queue.push_back(SensorEvent::Wheels(ticks));
     }
 
     fn read_gyro(&mut self, stamp: Stamp) {
@@ -263,14 +275,14 @@ impl Simulator {
             rate.omega = self.last_readings.turn_rate.unwrap_or(rate.omega);
         }
         self.last_readings.turn_rate = Some(rate.omega);
-        self.queue.push_back(SensorEvent::Gyro(rate));
+        self.outgoing.queue.push_back(SensorEvent::Gyro(rate));
     }
 
     fn read_bumper(&mut self, stamp: Stamp) {
         let pressed = self.faults.bumper().unwrap_or(self.last_readings.is_touching);
         if pressed != self.last_readings.is_pressed {
             self.last_readings.is_pressed = pressed;
-            self.queue.push_back(SensorEvent::Touch(Touch { stamp, pressed }));
+            self.outgoing.queue.push_back(SensorEvent::Touch(Touch { stamp, pressed }));
         }
     }
 
@@ -282,7 +294,7 @@ impl Simulator {
             SceneSnapshot { world: &self.scene.world, movers: &movers, lights: &self.scene.lights };
         let kinds = station.read(self.body.pose(), self.body.footprint(), &snapshot);
         let event = |kind| SensorEvent::Body(BodyEvent { stamp, kind });
-        self.queue.extend(kinds.into_iter().map(event));
+        self.outgoing.queue.extend(kinds.into_iter().map(event));
     }
 
     fn read_laser(&mut self, stamp: Stamp, scan: u64) -> Result<(), SimError> {
@@ -291,7 +303,7 @@ impl Simulator {
         let snapshot =
             SceneSnapshot { world: &self.scene.world, movers: &movers, lights: &self.scene.lights };
         let scan = laser.measure(&snapshot, |age| self.track.back(age), stamp, scan)?;
-        self.queue.push_back(SensorEvent::Scan(scan));
+        self.outgoing.queue.push_back(SensorEvent::Scan(scan));
         Ok(())
     }
 
@@ -301,12 +313,12 @@ impl Simulator {
             return Ok(());
         }
         let shot = Shot { people: self.crowd.view(), track: self.track.clone(), stamp, frame, fault };
-        let Some(rig) = &mut self.rig else {
-            self.shots.push(shot);
+        let Some(rig) = &mut self.camera.rig else {
+            self.camera.shots.push(shot);
             return Ok(());
         };
         let image = shot.expose(rig, &self.scene)?;
-        self.latency.send(SensorEvent::Rgbd(image), self.now, fault.delay, &mut self.queue);
+        self.outgoing.latency.send(SensorEvent::Rgbd(image), self.now, fault.delay, &mut self.outgoing.queue);
         Ok(())
     }
 }
@@ -356,11 +368,11 @@ impl RobotBody for Simulator {
 
     /// The next event; never `None`.
     fn next_event(&mut self) -> Result<Option<SensorEvent>, SimError> {
-        while self.queue.is_empty() {
+        while self.outgoing.queue.is_empty() {
             self.step();
             self.read_sensors()?;
         }
-        Ok(self.queue.pop_front())
+        Ok(self.outgoing.queue.pop_front())
     }
 
     /// Drives with `twist` once the command delay is over.

@@ -33,8 +33,8 @@ fn main() {
     if let Some(seed) = value("--seed=") {
         config.seed = seed.parse().unwrap();
     }
-    if let Some(least) = value("--least-texture=") {
-        config.orb.min_texture = least.parse().unwrap();
+    if let Some(min) = value("--least-texture=") {
+        config.orb.min_texture = min.parse().unwrap();
     }
     let is_blind = flags.iter().any(|flag| flag == "--blind");
     let mut extractor = OrbExtractor::new(config.orb.clone()).unwrap();
@@ -74,17 +74,17 @@ fn main() {
         slam.landmarks().count()
     );
     if let Some((last, off)) = drift {
-        let way = way(&drive, last);
-        let percent = 100.0 * off / way.max(1e-9);
-        println!("until the first loop: {off:.3} m off after {way:.1} m, {percent:.2} %");
+        let trajectory = trajectory(&drive, last);
+        let percent = 100.0 * off / trajectory.max(1e-9);
+        println!("until the first loop: {off:.3} m off after {trajectory:.1} m, {percent:.2} %");
     }
     slam.finish_refining();
     judge(&drive, &slam, &states, &total);
     for (name, times) in
         [("features", &mut features), ("a step with these", &mut total), ("the same, keyframes", &mut kept)]
     {
-        let [median, high, most] = [0.5, 0.99, 1.0].map(|share| part(times, share));
-        println!("{name:>20}: median {median:6.2} ms, 99 % {high:6.2} ms, most {most:6.2} ms");
+        let [median, high, max] = [0.5, 0.99, 1.0].map(|share| part(times, share));
+        println!("{name:>20}: median {median:6.2} ms, 99 % {high:6.2} ms, max {max:6.2} ms");
     }
 }
 
@@ -95,7 +95,7 @@ fn off_since_start(drive: &Drive, i: usize, pose: Pose3) -> Option<Pose3> {
 }
 
 /// How far the camera had gone at frame `last`, m.
-fn way(drive: &Drive, last: usize) -> f64 {
+fn trajectory(drive: &Drive, last: usize) -> f64 {
     let places: Vec<Vector3> =
         drive.frames[..=last].iter().filter_map(|frame| Some(frame.truth?.translation)).collect();
     places.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
@@ -127,14 +127,14 @@ fn judge(drive: &Drive, slam: &RgbdSlam, states: &[String], times: &[f64]) {
     };
     let known: Vec<(usize, Vector3, Vector3)> = slam.trajectory().iter().filter_map(known).collect();
     let (estimate, truth): (Vec<Vector3>, Vec<Vector3>) = known.iter().map(|(_, e, t)| (*e, *t)).unzip();
-    let way: f64 = truth.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    let trajectory: f64 = truth.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
     let errors: Vec<Vector3> =
         aligned(&estimate, &truth).into_iter().zip(&truth).map(|(e, t)| e - t).collect();
     let rms = |part: &dyn Fn(&Vector3) -> f64| {
         (errors.iter().map(|e| part(e).powi(2)).sum::<f64>() / errors.len() as f64).sqrt() * 100.0
     };
     println!(
-        "ATE {:.2} cm over {} frames and {way:.1} m, {:.2} cm of it up and down",
+        "ATE {:.2} cm over {} frames and {trajectory:.1} m, {:.2} cm of it up and down",
         rms(&|e| e.norm()),
         errors.len(),
         rms(&|e| e.z)

@@ -34,7 +34,7 @@ pub struct SlamConfig {
     pub mapping: LocalMappingConfig,
     /// Loop closing.
     pub loops: LoopConfig,
-    /// Seed of the random samples. Default 0.
+    /// Seed of the random samples, 0 or more. Default 0.
     pub seed: u64,
     /// Number of newest frames whose poses are kept, 1 or more. A larger number keeps a longer trajectory, of some 100 bytes per frame.
     /// Default 108,000: an hour at 30 Hz.

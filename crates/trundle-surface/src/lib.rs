@@ -1,4 +1,4 @@
-//! The surface of what a depth camera saw, as triangles with colours.
+//! Surface reconstruction from depth images: triangles with colours.
 //!
 //! Problem: a floor map shows where the robot can drive, and not what the rooms look like. Idea: each voxel near a surface averages the
 //! signed distances that the depth images show (\[Curless96\]); voxels are stored in blocks near surfaces only (\[Niessner13\]). The surface is

@@ -201,7 +201,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shapes_land_where_they_are_told() {
+    fn shapes_are_drawn_at_their_coordinates() {
         let mut canvas = Canvas::new(40, 30, Color::WHITE);
         canvas.fill_rect(-5, -5, 8, 8, Color::BLACK);
         canvas.dot((20.0, 15.0), 4.0, Color::BLUE);

@@ -9,6 +9,13 @@
 //! colour has one meaning in all pictures. The typeface is part of the crate. No clock and no random number is used: equal content gives
 //! equal bytes. No input is an error: numbers that are not finite are left out, an empty grid or image gives an empty picture, and a too
 //! large picture is shrunk.
+//!
+//! ```
+//! use trundle_viz::{Chart, Color};
+//! let speeds = vec![(0.0, 0.0), (1.0, 0.3), (2.0, 0.3)];
+//! let chart = Chart::new("Speed", "time, s", "speed, m/s").line("v", Color::BLUE, speeds);
+//! assert!(chart.to_svg_file().starts_with("<svg"));
+//! ```
 
 mod camera;
 mod canvas;

@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_fills_the_width_it_says() {
+    fn text_has_its_reported_width() {
         let (text, scale) = ("1 m gj", 2);
         let mut canvas = Canvas::new(100, 30, Color::WHITE);
         canvas.text(10, 5, text, TextStyle::new(scale, Color::BLACK));

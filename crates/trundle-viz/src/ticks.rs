@@ -29,11 +29,11 @@ impl Ticks {
     }
 }
 
-/// The least of 1, 2, 5 times a power of ten that is not below `least` (which must be positive).
-pub(crate) fn round_step(least: f64) -> f64 {
-    let power = 10_f64.powf(least.log10().floor());
+/// The smallest of 1, 2, 5 times a power of ten that is not below `min` (which must be positive).
+pub(crate) fn round_step(min: f64) -> f64 {
+    let power = 10_f64.powf(min.log10().floor());
     let choices = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power);
-    choices.into_iter().find(|&step| step >= least * (1.0 - 1e-9)).unwrap_or(10.0 * power)
+    choices.into_iter().find(|&step| step >= min * (1.0 - 1e-9)).unwrap_or(10.0 * power)
 }
 
 /// A number with the digits required by a step of `step`.

@@ -60,7 +60,7 @@ mod tests {
         assert!(tree(&root, "no-such-feature").is_err());
     }
 
-    /// A feature that nobody lists would not be checked.
+    /// A feature without an entry is not checked.
     #[test]
     fn every_feature_is_listed() {
         let text =

@@ -55,11 +55,11 @@ impl Allowed {
 
     /// The list's text for the findings: never more than allowed, unless `grows`.
     pub fn shrunk(&self, findings: &[Finding], grows: bool) -> String {
-        let least = |((rule, path), count): ((Rule, String), usize)| {
+        let min = |((rule, path), count): ((Rule, String), usize)| {
             let allowed = self.0.get(&(rule, path.clone())).copied().unwrap_or(0);
             (rule, path, if grows { count } else { count.min(allowed) })
         };
-        let lines = counts(findings).into_iter().map(least).filter(|(.., count)| *count > 0);
+        let lines = counts(findings).into_iter().map(min).filter(|(.., count)| *count > 0);
         let head = "# Findings of `cargo xtask tidy` that are allowed until they are mended: rule, file, count. The list only shrinks:\n\
                     # `cargo xtask tidy --shrink` lowers the counts to what is there.\n";
         let lines = lines.map(|(rule, path, count)| format!("{} {path} {count}\n", rule.name()));

@@ -1,7 +1,7 @@
-//! Sources of constants: the documentation of a number says where its value comes from.
+//! Sources of constants: the documentation of a number names the source of its value.
 //!
 //! A number whose value is made of literals has a choice or a measurement in it. Four kinds need no source of their own: an expression of
-//! other constants, a whole number that says where or how something is stored, a table of whole numbers, and a constant that shares the
+//! other constants, a whole number that describes the place or form of stored data, a table of whole numbers, and a constant that shares the
 //! documentation of the line above.
 
 use super::constants::{NUMBERS, declared};
@@ -93,7 +93,7 @@ fn is_derived(value: &str) -> bool {
     identifiers(value).any(is_constant)
 }
 
-/// Whether whole numbers are a table, or one says where or how something is stored.
+/// Whether whole numbers are a table, or one describes the place or form of stored data.
 fn is_layout(name: &str, kind: &str) -> bool {
     let is_whole = !identifiers(kind).any(|word| ["f64", "f32", "Duration"].contains(&word));
     let is_limit = name.split('_').any(|word| LIMIT_WORDS.contains(&word));

@@ -15,7 +15,7 @@ use trundle::docking::Method;
     trundle dock hong24-a --write-problem corridor.txt\n  \
     trundle dock corridor.txt --problem hong24-a\n  \
     trundle dock robot.log --scan 12 --to 0.4,0.1,0\n\n\
-    Exit code: 0 a manoeuvre was found, 1 there is none or start or goal do not fit (why, and a picture, are written instead), 2 bad input, nothing is written."
+    Exit code: 0 a manoeuvre was found, 1 no manoeuvre, or start or goal do not fit (reason and picture are written instead), 2 bad input, nothing is written."
 )]
 pub struct DockArgs {
     /// A map in map_server's format (*.yaml), a laser log (*.log, one scan of it), a file of corridor problems

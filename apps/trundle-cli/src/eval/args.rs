@@ -11,12 +11,12 @@ use trundle::eval::{Alignment, DeltaUnit};
 pub struct EvalArgs {
     /// The object of the evaluation.
     #[command(subcommand)]
-    pub which: Which,
+    pub which: EvalObject,
 }
 
 /// Objects of an evaluation.
 #[derive(Debug, Subcommand)]
-pub enum Which {
+pub enum EvalObject {
     /// A trajectory, by its absolute and relative errors (ATE and RPE, as evo takes them).
     Trajectory(TrajectoryArgs),
     /// A trajectory, by relations between its poses (Kuemmerle et al. 2009).
@@ -117,9 +117,9 @@ impl EvalArgs {
     /// Options of every command.
     pub fn common(&self) -> &Common {
         match &self.which {
-            Which::Trajectory(args) => &args.common,
-            Which::Relations(args) => &args.common,
-            Which::Map(args) => &args.common,
+            EvalObject::Trajectory(args) => &args.common,
+            EvalObject::Relations(args) => &args.common,
+            EvalObject::Map(args) => &args.common,
         }
     }
 }

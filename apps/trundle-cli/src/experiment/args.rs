@@ -12,12 +12,12 @@ use trundle::experiments::{IndexRange, Shard};
 pub struct ExperimentArgs {
     /// The experiment.
     #[command(subcommand)]
-    pub which: Which,
+    pub which: Experiment,
 }
 
 /// The experiments.
 #[derive(Debug, Subcommand)]
-pub enum Which {
+pub enum Experiment {
     /// The eight start poses of Li et al.: the pose error at the goal, without ground truth.
     Poses(PosesArgs),
     /// An unknown room with obstacles, crossed while it is mapped.
@@ -207,15 +207,15 @@ impl ExperimentArgs {
     /// Options of every command.
     pub fn common(&self) -> &Common {
         match &self.which {
-            Which::RealTime(args) => &args.common,
-            Which::Corridor(args) => &args.common,
-            Which::Merge(args) => &args.common,
+            Experiment::RealTime(args) => &args.common,
+            Experiment::Corridor(args) => &args.common,
+            Experiment::Merge(args) => &args.common,
             which => &which.series().expect("invariant: every other experiment has many runs").common,
         }
     }
 }
 
-impl Which {
+impl Experiment {
     /// The options of an experiment with many runs.
     pub fn series(&self) -> Option<&SeriesArgs> {
         match self {

@@ -1,6 +1,6 @@
 //! Shards of an experiment on the command line.
 
-use super::args::{ExperimentArgs, MergeArgs, SeriesArgs, Which};
+use super::args::{Experiment, ExperimentArgs, MergeArgs, SeriesArgs};
 use clap::Parser;
 use trundle::app::AppError;
 use trundle::experiments::{RunOrigin, ShardManifest, shard_arguments};
@@ -36,7 +36,7 @@ pub fn origin_of(series: Option<&SeriesArgs>) -> Result<RunOrigin, AppError> {
 ///
 /// # Errors
 /// When the arguments in the manifest do not belong to an experiment of this version.
-pub fn experiment_of(manifest: &ShardManifest, merge: &MergeArgs) -> Result<Which, AppError> {
+pub fn experiment_of(manifest: &ShardManifest, merge: &MergeArgs) -> Result<Experiment, AppError> {
     let out = ["--out".into(), merge.out.as_os_str().to_owned()];
     let quiet = merge.common.quiet.then(|| "--quiet".into());
     let words = manifest.arguments.iter().map(Into::into).chain(out).chain(quiet);

@@ -10,8 +10,8 @@ use std::str::FromStr;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: trundle plan ../shared/data/nav/nav2/depot.yaml --from=9.3,10.7,114 --goal=17.1,9.2,-80\n\n\
-    Several goals are driven to in a row: --goal kitchen --goal=1,2,90. docs/algorithms/planning.md says what the files hold.\n\n\
-    Exit code: 0 a plan for every goal, 1 there is none (why, and a picture, are written instead), 2 bad input, nothing is written."
+    Several goals are driven to in a row: --goal kitchen --goal=1,2,90. docs/algorithms/planning.md describes the files.\n\n\
+    Exit code: 0 a plan for every goal, 1 no plan (reason and picture are written instead), 2 bad input, nothing is written."
 )]
 pub struct PlanArgs {
     /// A map in map_server's format.

@@ -50,7 +50,7 @@ pub struct SlamArgs {
     /// The output.
     #[command(flatten)]
     pub result: SlamResultArgs,
-    /// The surface of what the camera saw.
+    /// The surface in the camera's images.
     #[command(flatten)]
     pub surface: SurfaceArgs,
     /// The live page, which shows the tracking and accepts no commands.
@@ -78,7 +78,7 @@ pub struct SlamResultArgs {
     pub out: OutputDirArg,
 }
 
-/// The surface of what the camera saw, along the final trajectory.
+/// The surface in the camera's images, along the final trajectory.
 #[derive(Debug, Args)]
 pub struct SurfaceArgs {
     /// Write the surface as triangles with colours, .glb or .ply

@@ -23,9 +23,9 @@ fn the_demo_reaches_its_goal_and_replays_byte_for_byte() {
     fs::write(&cut, &bytes[..bytes.len() / 3]).unwrap();
     assert!(refusal(&["replay", text(&cut), "--out", text(&again)]).contains("--recover"));
     let output = trundle(&["replay", text(&cut), "--recover", "--quiet", "--out", text(&again)]);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains(&format!("cut at byte {}; ", bytes.len() / 3)), "{said}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains(&format!("cut at byte {}; ", bytes.len() / 3)), "{message}");
     let output = trundle(&["replay", text(&recording), "--threads", "1", "--quiet", "--out", text(&again)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     for name in ["map.pgm", "map.yaml", "trajectory.txt", "groundtruth.txt", "report.html", "recording.mcap"]
@@ -45,11 +45,11 @@ fn a_recording_has_no_images_unless_it_is_asked_for_all() {
         assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
         (out.join("recording.mcap"), String::from_utf8(output.stdout).unwrap())
     };
-    let (events, said) = record(&[]);
-    assert!(said.contains("Records events without images") && said.contains("MB in 4 s"), "{said}");
+    let (events, message) = record(&[]);
+    assert!(message.contains("Records events without images") && message.contains("MB in 4 s"), "{message}");
     let bytes = fs::metadata(&events).unwrap().len();
     assert!((50_000..2_000_000).contains(&bytes), "{bytes} bytes in 4 s");
     assert!(refusal(&["replay", text(&events)]).contains("--record all"));
-    let (nothing, said) = record(&["--record", "none"]);
-    assert!(said.contains("Nothing is recorded.") && !nothing.exists(), "{said}");
+    let (nothing, message) = record(&["--record", "none"]);
+    assert!(message.contains("Nothing is recorded.") && !nothing.exists(), "{message}");
 }

@@ -19,8 +19,8 @@ fn a_robot_beside_its_goal_gets_there_step_by_step() {
     fs::write(&file, PROBLEM).unwrap();
     let output = trundle(&["dock", text(&file), "--out", text(&out)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(said.contains("step") && said.contains("planned in"), "{said}");
+    let message = String::from_utf8(output.stdout).unwrap();
+    assert!(message.contains("step") && message.contains("planned in"), "{message}");
     let found = summary(&out);
     let (time, bound) = (found["duration_s"].as_f64().unwrap(), found["bound_s"].as_f64().unwrap());
     assert!(bound > 0.0 && bound <= time + 1e-9, "{bound} {time}");
@@ -91,17 +91,17 @@ fn bad_tasks_are_refused_with_their_reason() {
     let map = write_room(scratch.path());
     let file = scratch.path().join("beside.txt");
     fs::write(&file, PROBLEM).unwrap();
-    let said = |extra: &[&str]| refusal(&[&["dock"], extra].concat());
-    assert!(said(&[text(&map)]).contains("a map needs --from and --to"));
-    assert!(said(&[text(&file), "--problem=x"]).contains("it has no problem 'x'"));
-    let shaped = |corners: &str| said(&[text(&file), "--footprint", corners]);
+    let message = |extra: &[&str]| refusal(&[&["dock"], extra].concat());
+    assert!(message(&[text(&map)]).contains("a map needs --from and --to"));
+    assert!(message(&[text(&file), "--problem=x"]).contains("it has no problem 'x'"));
+    let shaped = |corners: &str| message(&[text(&file), "--footprint", corners]);
     assert!(shaped("0.3,0.2 -0.3,0.2 0,0.1 -0.3,-0.2 0.3,-0.2").contains("expected convex"));
     assert!(shaped("0,0 1,0 2,0").contains("area is 0 m^2"));
-    assert!(said(&["nowhere.txt"]).contains("cannot read nowhere.txt: it does not exist"));
+    assert!(message(&["nowhere.txt"]).contains("cannot read nowhere.txt: it does not exist"));
     fs::write(&file, PROBLEM.replace("start -0.1 0 90", "start NaN 0 90")).unwrap();
-    assert!(said(&[text(&file)]).contains("line 4"));
+    assert!(message(&[text(&file)]).contains("line 4"));
     fs::write(&file, format!("{PROBLEM}\nwall 0 0 1 NaN\n")).unwrap();
-    assert!(said(&[text(&file)]).contains("finite numbers"));
+    assert!(message(&[text(&file)]).contains("finite numbers"));
 }
 
 #[test]
@@ -147,8 +147,8 @@ fn built_in_problems_are_written_and_read() {
     let there = trundle(&["dock", "hong24-a", "--to=-0.1,0,90", "--out", text(&out)]);
     assert!(String::from_utf8_lossy(&there.stdout).contains("Already there"));
     fs::write(&file, PROBLEM.replace("goal 0.1 0 90\n", "")).unwrap();
-    let said = refusal(&["dock", text(&file)]);
-    assert!(said.contains("`goal`"), "{said}");
+    let message = refusal(&["dock", text(&file)]);
+    assert!(message.contains("`goal`"), "{message}");
 }
 
 /// A written problem is the problem that would have been solved.
@@ -174,13 +174,14 @@ fn a_problem_is_written_as_it_was_asked_for() {
 
 #[test]
 fn options_that_mean_nothing_here_are_refused() {
-    let said = |extra: &[&str]| refusal(&[&["dock", "hong24-a"], extra].concat());
+    let message = |extra: &[&str]| refusal(&[&["dock", "hong24-a"], extra].concat());
     assert!(
-        said(&["--problem=x"]).contains("--problem goes with a file of problems, this is a built-in problem")
+        message(&["--problem=x"])
+            .contains("--problem goes with a file of problems, this is a built-in problem")
     );
-    assert!(said(&["--scan=1"]).contains("--scan goes with a laser log"));
-    assert!(said(&["--through-unknown"]).contains("--through-unknown goes with a map"));
-    assert!(said(&["--margin=0.9"]).contains("docking.margin is 0.9 m"));
+    assert!(message(&["--scan=1"]).contains("--scan goes with a laser log"));
+    assert!(message(&["--through-unknown"]).contains("--through-unknown goes with a map"));
+    assert!(message(&["--margin=0.9"]).contains("docking.margin is 0.9 m"));
 }
 
 #[test]

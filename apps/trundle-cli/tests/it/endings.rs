@@ -45,10 +45,13 @@ fn signalled(args: &[&str], out: &Path, signal: &str) -> Output {
 
 /// Asserts that the program was stopped by Ctrl-C or SIGTERM, reported it, and wrote its results.
 fn assert_stopped(output: &Output, out: &Path, (code, signal): (i32, &str)) {
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{said}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{message}");
     let place = format!("; the results so far are in {}", out.display());
-    assert!(said.contains(&format!("stopped by {signal} after ")) && said.contains(&place), "{said}");
+    assert!(
+        message.contains(&format!("stopped by {signal} after ")) && message.contains(&place),
+        "{message}"
+    );
     assert_eq!(summary(out)["interrupted"], true);
     assert!(!writes_in(out.parent().unwrap()));
 }
@@ -63,8 +66,11 @@ fn an_operated_run_that_is_stopped_with_open_tasks_is_no_success() {
     let output = signalled(&["demo", "--live", "127.0.0.1:0", "--out", text(&out)], &out, "-TERM");
     assert_stopped(&output, &out, TERMINATED);
     assert_eq!(summary(&out)["success"], false);
-    let said = String::from_utf8_lossy(&output.stdout);
-    assert!(said.contains("tasks were open at the end, 0 done") && !said.contains("Mission done"), "{said}");
+    let message = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        message.contains("tasks were open at the end, 0 done") && !message.contains("Mission done"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -184,9 +190,9 @@ fn a_stopped_drive_names_the_map_that_it_has_written() {
     wait_until("the program writes no map", || map.exists());
     assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
     let output = child.wait_with_output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(143), "{said}");
-    assert!(!said.contains("nothing was written") && said.contains("map.yaml"), "{said}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(143), "{message}");
+    assert!(!message.contains("nothing was written") && message.contains("map.yaml"), "{message}");
 }
 
 /// The drawing of a map has no loop that reads the signal. Its result is complete, and a script that calls the program ends.
@@ -198,9 +204,9 @@ fn a_signal_after_the_last_loop_is_the_exit_code_too() {
     std::thread::sleep(Duration::from_millis(500));
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let output = child.wait_with_output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(130), "{said}");
-    assert!(said.contains("stopped by Ctrl-C") && said.contains("map.yaml"), "{said}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{message}");
+    assert!(message.contains("stopped by Ctrl-C") && message.contains("map.yaml"), "{message}");
     assert!(map.exists() && map.with_extension("pgm").exists());
 }
 
@@ -242,8 +248,8 @@ fn files_of_a_killed_run_are_named_and_removed() {
     assert_eq!(output.status.code(), None);
     assert!(writes_in(scratch.path()) && !out.exists());
     let output = trundle(&["dock", "hong24-b", "--out", text(&out)]);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && said.contains("left by a run that was killed"), "{said}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && message.contains("left by a run that was killed"), "{message}");
     assert!(!writes_in(scratch.path()) && out.exists());
 }
 
@@ -255,9 +261,9 @@ fn results_that_a_full_disk_refuses_are_named_and_the_rest_is_there() {
     let program = env!("CARGO_BIN_EXE_trundle");
     let script = format!("ulimit -f 8; exec {program} dock hong24-b --out {}", text(&out));
     let output = Command::new("sh").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{said}");
-    assert!(said.contains("the other results are in"), "{said}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(message.contains("the other results are in"), "{message}");
     assert_eq!(summary(&out)["command"], "dock");
     assert!(!out.join("dock.png").exists());
     let output = trundle(&["dock", "hong24-a", "--write-problem", "/dev/full"]);
@@ -274,14 +280,14 @@ fn a_stopped_short_command_leaves_all_or_nothing() {
         std::thread::sleep(Duration::from_millis(delay_ms));
         let _ = Command::new("kill").args(["-TERM", &child.id().to_string()]).stderr(Stdio::null()).status();
         let output = child.wait_with_output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(!writes_in(scratch.path()), "{delay_ms} ms: a hidden folder is left: {said}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(!writes_in(scratch.path()), "{delay_ms} ms: a hidden folder is left: {message}");
         match output.status.code() {
             Some(0) => assert!(out.join("summary.json").exists(), "{delay_ms} ms"),
             Some(143) => {
-                assert!(!out.exists() && said.contains("nothing was written"), "{delay_ms} ms: {said}")
+                assert!(!out.exists() && message.contains("nothing was written"), "{delay_ms} ms: {message}")
             }
-            other => assert!(other.is_none(), "{delay_ms} ms: {other:?} {said}"), // before it listens
+            other => assert!(other.is_none(), "{delay_ms} ms: {other:?} {message}"), // before it listens
         }
     }
 }
@@ -300,9 +306,9 @@ fn a_standard_output_that_is_full_is_an_incomplete_result() {
     ] {
         let program = || Command::new(env!("CARGO_BIN_EXE_trundle"));
         let output = program().args(args).stdin(Stdio::null()).stdout(full()).output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(3), "{args:?}: {said}");
-        assert!(said.contains("cannot write to standard output: the disk is full"), "{args:?}: {said}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{args:?}: {message}");
+        assert!(message.contains("cannot write to standard output: the disk is full"), "{args:?}: {message}");
     }
 }
 
@@ -334,9 +340,9 @@ fn a_disk_that_takes_no_image_is_named() {
         text(&out)
     );
     let output = Command::new("sh").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{said}");
-    assert!(said.contains("cannot write") && !said.contains("no image to write"), "{said}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(message.contains("cannot write") && !message.contains("no image to write"), "{message}");
 }
 
 /// Ends a drive recorded into `out` `delay_ms` after the start of its commit, seen from outside, by a second signal or by `kill -9`.

@@ -67,9 +67,9 @@ fn a_full_disk_ends_the_recording_and_not_the_mission() {
         text(&out)
     );
     let output = Command::new("sh").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{said}");
-    assert!(said.contains("recording.mcap") && said.contains("the robot goes on"), "{said}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(message.contains("recording.mcap") && message.contains("the robot continues"), "{message}");
     assert_eq!(summary(&out)["contacts"], 0);
     assert!(summary(&out)["goal_error_m"].as_f64().unwrap() < 0.05);
     assert!(!out.join("recording.mcap").exists());

@@ -19,9 +19,9 @@ fn sequence(folder: &Path) -> PathBuf {
 /// The trajectory of `trundle slam`, its summary, and its output.
 fn track(data: &Path, out: &Path) -> (String, serde_json::Value, String) {
     let output = trundle(&["slam", text(data), "--quiet", "--height=0.45", "--tilt=8", "--out", text(out)]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{said}");
-    (fs::read_to_string(out.join("trajectory.txt")).unwrap(), summary(out), said)
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{message}");
+    (fs::read_to_string(out.join("trajectory.txt")).unwrap(), summary(out), message)
 }
 
 #[test]
@@ -30,8 +30,8 @@ fn a_sequence_in_other_forms_is_the_same_sequence() {
     let (data, out) = (sequence(scratch.path()), scratch.path().join("out"));
     let file = |name: &str| data.join(name);
     let read = |name: &str| fs::read_to_string(file(name)).unwrap();
-    let (expected, numbers, said) = track(&data, &out);
-    assert!(said.is_empty() && numbers["camera_assumed"] == false, "{said}");
+    let (expected, numbers, message) = track(&data, &out);
+    assert!(message.is_empty() && numbers["camera_assumed"] == false, "{message}");
 
     // The camera comes from orb_slam.yaml, the images from associations.txt, and the odometry has TUM's format.
     let poses = read_odometry(&file("odometry.txt")).unwrap();
@@ -42,10 +42,10 @@ fn a_sequence_in_other_forms_is_the_same_sequence() {
     fs::write(file("odometry.txt"), poses.iter().map(line).collect::<String>()).unwrap();
     let lists = [read("rgb.txt"), read("depth.txt")];
     ["camera.toml", "rgb.txt", "depth.txt"].iter().for_each(|name| fs::remove_file(file(name)).unwrap());
-    let (found, numbers, said) = track(&data, &out);
+    let (found, numbers, message) = track(&data, &out);
     assert_eq!(found.lines().count(), expected.lines().count());
     assert!(numbers["camera"].as_str().unwrap().ends_with("orb_slam.yaml"), "{numbers}");
-    assert!(said.is_empty() && numbers["ate_rmse_m"].as_f64().unwrap() < 0.02, "{said} {numbers}");
+    assert!(message.is_empty() && numbers["ate_rmse_m"].as_f64().unwrap() < 0.02, "{message} {numbers}");
     let mapped =
         trundle(&["map", text(&data), "--quiet", "--particles=2", "--map-image=png", "--out", text(&out)]);
     assert!(mapped.status.code() != Some(2), "{}", String::from_utf8_lossy(&mapped.stderr));
@@ -62,35 +62,38 @@ fn a_sequence_in_other_forms_is_the_same_sequence() {
     }
     fs::write(file("groundtruth.txt"), "#timestamp, p_x, p_y, p_z, q_w, q_x, q_y, q_z\n5,0,0\n").unwrap();
     fs::remove_file(file("odometry.txt")).unwrap();
-    let (found, _, said) = track(&data, &out);
+    let (found, _, message) = track(&data, &out);
     assert_eq!(found.lines().count(), expected.lines().count());
     for words in ["taken as nanoseconds", "which are sorted", "row left out"] {
-        assert_eq!(said.matches(words).count(), 1, "{words}: {said}");
+        assert_eq!(message.matches(words).count(), 1, "{words}: {message}");
     }
 }
 
 #[test]
-fn unreadable_depth_images_are_one_warning_and_an_assumed_camera_is_said() {
+fn unreadable_depth_images_and_an_assumed_camera_give_one_warning_each() {
     let scratch = tempfile::tempdir().unwrap();
     let (data, out) = (sequence(scratch.path()), scratch.path().join("out"));
     for entry in fs::read_dir(data.join("depth")).unwrap() {
         image::GrayImage::new(512, 424).save(entry.unwrap().path()).unwrap();
     }
-    let said = refusal(&["slam", text(&data), "--quiet", "--out", text(&out)]);
-    assert_eq!(said.matches("8-bit grey pixels").count(), 2, "one warning and the error: {said}");
-    assert!(said.contains("times: ") && said.lines().count() == 2, "{said}");
+    let message = refusal(&["slam", text(&data), "--quiet", "--out", text(&out)]);
+    assert_eq!(message.matches("8-bit grey pixels").count(), 2, "one warning and the error: {message}");
+    assert!(message.contains("times: ") && message.lines().count() == 2, "{message}");
     for name in ["camera.toml", "orb_slam.yaml"] {
         fs::remove_file(data.join(name)).unwrap();
     }
-    let said = refusal(&["slam", text(&data), "--quiet", "--out", text(&out)]);
-    assert!(said.contains("freiburg1 is assumed"), "{said}");
+    let message = refusal(&["slam", text(&data), "--quiet", "--out", text(&out)]);
+    assert!(message.contains("freiburg1 is assumed"), "{message}");
     fs::write(
         data.join("camera.toml"),
         "width = 512\nheight = 424\nfx = 365\nfy = 365\ncx = 256\ncy = 212\ndepth_scale = 0.001\n",
     )
     .unwrap();
-    let said = refusal(&["slam", text(&data), "--quiet", "--out", text(&out)]);
-    assert!(said.contains("camera.toml, line 7: depth_scale is 0.001, expected units per metre"), "{said}");
+    let message = refusal(&["slam", text(&data), "--quiet", "--out", text(&out)]);
+    assert!(
+        message.contains("camera.toml, line 7: depth_scale is 0.001, expected units per metre"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -101,12 +104,12 @@ fn a_map_is_planned_on_in_any_picture_format() {
         let out = scratch.path().join("out");
         let output =
             trundle(&["plan", text(&map), "--from=1,1,0", "--to=5,1,0", "--quiet", "--out", text(&out)]);
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.success(), "{said}");
-        (fs::read(out.join("trajectory.csv")).unwrap(), said)
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{message}");
+        (fs::read(out.join("trajectory.csv")).unwrap(), message)
     };
-    let (expected, said) = plan();
-    assert!(said.is_empty(), "{said}");
+    let (expected, message) = plan();
+    assert!(message.is_empty(), "{message}");
     let yaml = fs::read_to_string(&map).unwrap();
     let pgm = fs::read(scratch.path().join("room.pgm")).unwrap();
     let greys = pgm[pgm.len() - 120 * 80..].to_vec();
@@ -135,10 +138,10 @@ fn trajectories_that_cannot_be_compared_are_refused_with_the_reason() {
         "rounded.txt",
         (0..100).map(|i| format!("{} {} 0 0 0 0 0 1\n", i / 20, f64::from(i) * 0.1)).collect(),
     );
-    let said = refusal(&["eval", "relations", text(&rounded), text(&rounded)]);
-    assert!(said.contains("95 of 100 poses have the timestamp of the pose before"), "{said}");
+    let message = refusal(&["eval", "relations", text(&rounded), text(&rounded)]);
+    assert!(message.contains("95 of 100 poses have the timestamp of the pose before"), "{message}");
     let short =
         file("short.txt", (0..9).map(|i| format!("{i} {} 0 0 0 0 0 1\n", f64::from(i) * 0.1)).collect());
-    let said = refusal(&["eval", "relations", text(&short), text(&short)]);
-    assert!(said.contains("its path is 0.80 m long, expected at least 1 m"), "{said}");
+    let message = refusal(&["eval", "relations", text(&short), text(&short)]);
+    assert!(message.contains("its path is 0.80 m long, expected at least 1 m"), "{message}");
 }

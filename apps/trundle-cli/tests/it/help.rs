@@ -71,7 +71,7 @@ fn the_help_of_trundle_lists_every_command() {
 }
 
 #[test]
-fn commands_that_write_a_folder_say_where() {
+fn commands_that_write_a_folder_print_its_path() {
     for command in [&["demo"][..], &["slam"], &["map"], &["plan"], &["dock"], &["experiment", "poses"]] {
         let text = help(command);
         assert!(text.contains("--out <DIR>") && text.contains("[default: out/"), "{command:?}: {text}");

@@ -147,7 +147,7 @@ fn replayed_alike(folder: &Path) {
 }
 
 #[test]
-fn a_robot_that_is_unplugged_stops_says_so_and_goes_on_when_it_is_back() {
+fn an_unplugged_robot_stops_with_that_reason_and_continues_when_it_returns() {
     let folder = tempfile::tempdir().unwrap();
     let robot = EmulatedRobot::start(folder.path());
     let mut run = robot.run(&["--goal", "2,0,0", "--time-limit", RUN_LIMIT_S]);
@@ -228,7 +228,7 @@ fn a_check_shows_rates_and_tilt_and_writes_the_measured_part_of_the_robot_file()
     assert_eq!(output.status.code(), Some(0), "{table}");
     assert!((first_number(&table, "wheels: rate, longest gap") - 50.0).abs() < 5.0, "{table}");
     assert!((first_number(&table, "images: rate, longest gap, age on arrival") - 8.0).abs() < 2.0, "{table}");
-    assert!(table.contains("signs of the encoders not checked"), "nobody pushed it: {table}");
+    assert!(table.contains("signs of the encoders not checked"), "the robot was not pushed: {table}");
     assert!((first_number(&table, "mount.pitch_deg") - 8.0).abs() < 0.5, "{table}");
     let written = std::fs::read_to_string(&file).unwrap();
     assert!(written.starts_with("# mine") && written.contains("# by eye"), "{written}");

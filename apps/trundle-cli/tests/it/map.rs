@@ -67,7 +67,7 @@ fn mapped(scratch: &Path) -> Option<(std::path::PathBuf, std::path::PathBuf)> {
 }
 
 #[test]
-fn an_old_map_is_gone_on_with_and_localised_in() {
+fn a_saved_map_is_continued_and_used_for_localization() {
     let scratch = tempfile::tempdir().unwrap();
     let Some((log, first)) = mapped(scratch.path()) else { return };
     let (saved, grid) = (first.join("filter.map"), first.join("map.yaml"));
@@ -175,16 +175,16 @@ fn the_old_map_survives_a_disk_that_fills_up() {
             .args(["--particles=4", "--laser-x=0.78", "--quiet", "--seed=9", "--out", text(&first)])
             .output()
             .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
+        let message = String::from_utf8_lossy(&output.stderr);
         let last = first.with_file_name("first.1");
         if output.status.code() == Some(3) {
-            assert!(said.contains("cannot write"), "{blocks} blocks: {said}");
+            assert!(message.contains("cannot write"), "{blocks} blocks: {message}");
             // Files that could not be written are reported, and the last run is preserved.
             fs::remove_dir_all(&first).unwrap();
             fs::rename(&last, &first).unwrap();
         } else {
-            assert_eq!(output.status.code(), Some(2), "{blocks} blocks: {said}");
-            assert!(said.contains("cannot create") && !last.exists(), "{blocks} blocks: {said}");
+            assert_eq!(output.status.code(), Some(2), "{blocks} blocks: {message}");
+            assert!(message.contains("cannot create") && !last.exists(), "{blocks} blocks: {message}");
         }
         assert_eq!(names.map(read), old, "{blocks} blocks");
         let left: Vec<_> = fs::read_dir(scratch.path()).unwrap().flatten().map(|e| e.file_name()).collect();
@@ -225,8 +225,8 @@ fn an_error_of_a_comparison_names_the_file_that_is_wrong() {
         fs::write(&path, lines).unwrap();
         path
     };
-    let way: String = (0..30).map(|k| format!("{k}.0 {k} 0 0\n")).collect();
-    let (reference, late) = (lines("ref.txt", &way), lines("late.txt", "900 0 0 0\n901 1 0 0\n"));
+    let route: String = (0..30).map(|k| format!("{k}.0 {k} 0 0\n")).collect();
+    let (reference, late) = (lines("ref.txt", &route), lines("late.txt", "900 0 0 0\n901 1 0 0\n"));
     let sentence = refusal(&["eval", "relations", text(&reference), text(&late)]);
     assert!(sentence.contains("late.txt: the estimate has poses for none of the"), "{sentence}");
 }

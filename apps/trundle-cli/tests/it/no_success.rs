@@ -24,14 +24,15 @@ fn log_of_scans(dir: &Path, range: f64, scans: u32) -> String {
 
 #[test]
 fn a_map_of_ranges_that_are_zero_or_in_millimetres_fails() {
-    for (range, cause) in [(0.0, "no beam of any scan met anything"), (4000.0, "are they in millimetres?")] {
+    for (range, cause) in [(0.0, "no beam of any scan hit an obstacle"), (4000.0, "are they in millimetres?")]
+    {
         let scratch = tempfile::tempdir().unwrap();
         let log = log_of(scratch.path(), range);
         let out = scratch.path().join("out");
         let run = trundle(&["map", &log, "--quiet", "--out", out.to_str().unwrap()]);
         assert_eq!(run.status.code(), Some(1), "{range}");
-        let said = String::from_utf8(run.stderr).unwrap();
-        assert!(said.contains(cause), "{range}: {said}");
+        let message = String::from_utf8(run.stderr).unwrap();
+        assert!(message.contains(cause), "{range}: {message}");
         let summary = std::fs::read_to_string(out.join("summary.json")).unwrap();
         assert!(summary.contains("\"success\": false"), "{summary}");
     }
@@ -43,9 +44,12 @@ fn a_long_log_in_millimetres_fails_after_a_few_scans() {
     let log = log_of_scans(scratch.path(), 4000.0, 200);
     let out = scratch.path().join("out");
     let run = trundle(&["map", &log, "--quiet", "--out", out.to_str().unwrap()]);
-    let said = String::from_utf8(run.stderr).unwrap();
-    assert_eq!(run.status.code(), Some(1), "{said}");
-    assert!(said.contains("10 of 11 scans do not overlap") && said.contains("millimetres?"), "{said}");
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(1), "{message}");
+    assert!(
+        message.contains("10 of 11 scans do not overlap") && message.contains("millimetres?"),
+        "{message}"
+    );
     let summary = std::fs::read_to_string(out.join("summary.json")).unwrap();
     assert!(
         summary.contains("\"success\": false") && !summary.contains("\"interrupted\": true"),
@@ -54,12 +58,12 @@ fn a_long_log_in_millimetres_fails_after_a_few_scans() {
 }
 
 #[test]
-fn docking_in_a_scan_that_met_nothing_fails() {
+fn docking_in_a_scan_without_returns_fails() {
     let scratch = tempfile::tempdir().unwrap();
     let log = log_of(scratch.path(), 0.0);
     let run = trundle(&["dock", &log, "--to=0.3,0,0", "--out", scratch.path().join("out").to_str().unwrap()]);
     assert_eq!(run.status.code(), Some(1));
-    assert!(String::from_utf8(run.stderr).unwrap().contains("no beam of the scan met anything"));
+    assert!(String::from_utf8(run.stderr).unwrap().contains("no beam of the scan hit an obstacle"));
 }
 
 #[test]
@@ -67,9 +71,9 @@ fn docking_in_a_scan_in_millimetres_fails() {
     let scratch = tempfile::tempdir().unwrap();
     let log = log_of(scratch.path(), 3000.0);
     let run = trundle(&["dock", &log, "--to=0.3,0,0", "--out", scratch.path().join("out").to_str().unwrap()]);
-    let said = String::from_utf8(run.stderr).unwrap();
-    assert_eq!(run.status.code(), Some(1), "{said}");
-    assert!(said.contains("are they in millimetres?"), "{said}");
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(1), "{message}");
+    assert!(message.contains("are they in millimetres?"), "{message}");
 }
 
 #[test]
@@ -78,9 +82,9 @@ fn a_topic_of_the_odometry_goes_with_a_bag() {
     let log = log_of(scratch.path(), 3.0);
     let run =
         trundle(&["map", &log, "--odom-topic=/odom", "--out", scratch.path().join("out").to_str().unwrap()]);
-    let said = String::from_utf8(run.stderr).unwrap();
-    assert_eq!(run.status.code(), Some(2), "{said}");
-    assert!(said.contains("--odom-topic is /odom") && said.contains("expected a bag"), "{said}");
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(2), "{message}");
+    assert!(message.contains("--odom-topic is /odom") && message.contains("expected a bag"), "{message}");
 }
 
 #[test]
@@ -97,7 +101,7 @@ fn images_of_one_timestamp_fail() {
         std::fs::write(data.join(list), same.concat()).unwrap();
     }
     let run = trundle(&["slam", place, "--quiet", "--out", scratch.path().join("out").to_str().unwrap()]);
-    let said = String::from_utf8(run.stderr).unwrap();
-    assert_eq!(run.status.code(), Some(1), "{said}");
-    assert!(said.contains("images only 1 could be used: the others have the same timestamp"), "{said}");
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(1), "{message}");
+    assert!(message.contains("images only 1 could be used: the others have the same timestamp"), "{message}");
 }

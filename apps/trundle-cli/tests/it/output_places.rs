@@ -40,10 +40,10 @@ fn a_place_that_cannot_be_written_is_refused_before_the_work_of_every_command() 
         &["vocabulary", "train", "--scene", "room", "--out", &any],
     ];
     for args in commands {
-        let said = refusal(args);
+        let message = refusal(args);
         assert!(
-            said.contains("cannot be written: a file is in the way") && said.contains(text(&file)),
-            "{said}"
+            message.contains("cannot be written: a file is in the way") && message.contains(text(&file)),
+            "{message}"
         );
     }
     let folder = refusal(&[&slam[..], &["--mesh", text(&data)]].concat());
@@ -86,9 +86,12 @@ fn a_full_disk_for_the_surface_keeps_all_other_results() {
     std::os::unix::fs::symlink("/dev/full", &full).unwrap();
     let args = ["slam", text(&data), "--out", text(&out), "--cloud", text(&full), "--mesh", text(&mesh)];
     let output = trundle(&args);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{said}");
-    assert!(said.contains("x.ply: the disk is full") && said.contains("the other results are in"), "{said}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(
+        message.contains("x.ply: the disk is full") && message.contains("the other results are in"),
+        "{message}"
+    );
     assert!(out.join("map.yaml").exists() && mesh.exists());
     assert_eq!(summary(&out)["success"], true);
 }
@@ -103,14 +106,14 @@ fn options_without_effect_are_refused() {
     assert!(slam(&["--recover"]).contains("--recover has no effect on"));
     assert!(slam(&["--depth-topic", "/d"]).contains("--depth-topic /d has no effect on"));
     for option in [&["--resolution", "0.1"][..], &["--band", "0.1", "0.5"], &["--map-image", "png"]] {
-        let said = refusal(&[&["sim", "demo"], option].concat());
-        assert!(said.contains("--map <FILE.yaml>"), "{option:?}: {said}");
+        let message = refusal(&[&["sim", "demo"], option].concat());
+        assert!(message.contains("--map <FILE.yaml>"), "{option:?}: {message}");
     }
     let scale = refusal(&["sim", "demo", "--scale", "0.01", "--duration", "1"]);
     assert!(scale.contains("--scale 0.01 has no effect on this scene"), "{scale}");
     for option in ["--out=x", "--method=paper", "--margin=0.1"] {
-        let said = refusal(&["dock", "hong24-a", "--write-problem", "x.txt", option]);
-        assert!(said.contains("cannot be used with"), "{said}");
+        let message = refusal(&["dock", "hong24-a", "--write-problem", "x.txt", option]);
+        assert!(message.contains("cannot be used with"), "{message}");
     }
     assert!(!out.exists());
 }

@@ -75,9 +75,9 @@ impl Room {
         let out = self.out();
         let base = ["plan", text(&self.map), "--places", text(&self.places), "--out", text(&out)];
         let output = trundle(&[&base, more].concat());
-        let (said, complaint) =
+        let (stderr_text, complaint) =
             (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
-        if output.status.success() { Ok(said) } else { Err(complaint) }
+        if output.status.success() { Ok(stderr_text) } else { Err(complaint) }
     }
 
     fn summary(&self) -> serde_json::Value {
@@ -94,10 +94,10 @@ fn trajectory(out: &Path) -> Vec<Vec<f64>> {
 #[test]
 fn named_goals_are_driven_to_in_a_row_and_stages_are_timed() {
     let room = Room::new();
-    let said =
+    let stderr_text =
         room.plan(&["--from", "desk", "--goal", "far door", "--goal=2,3,180", "--coefficients"]).unwrap();
     for word in ["distance field", "way-points", "curve", "timing", "x(u) = ", "u^5", "active constraints"] {
-        assert!(said.contains(word), "{word}: {said}");
+        assert!(stderr_text.contains(word), "{word}: {stderr_text}");
     }
     let summary = room.summary();
     assert_eq!(summary["goals"].as_array().unwrap().len(), 2);
@@ -117,7 +117,7 @@ fn named_goals_are_driven_to_in_a_row_and_stages_are_timed() {
 fn masks_forbid_and_slow_down() {
     let room = Room::new();
     let forbidden = write_mask(room.scratch.path(), "keepout", (254, 0), TRINARY);
-    // The only way leads through the mask's box above the wall.
+    // The only path leads through the mask's box above the wall.
     let complaint =
         room.plan(&["--from=desk", "--goal=far door", "--keepout", text(&forbidden)]).unwrap_err();
     assert!(
@@ -127,9 +127,12 @@ fn masks_forbid_and_slow_down() {
     let within = room.plan(&["--from=desk", "--goal=4,3.5,0", "--keepout", text(&forbidden)]).unwrap_err();
     assert!(within.contains("does not fit at the goal"), "{within}");
     let near = room.plan(&["--from=desk", "--goal=4,3.5,0", "--near=2", "--keepout", text(&forbidden)]);
-    let said = near.unwrap();
-    assert!(said.contains("goal 1 moved to") && said.contains("from the one asked for"), "{said}");
-    assert!(said.contains("the robot does not fit at the goal"), "{said}");
+    let stderr_text = near.unwrap();
+    assert!(
+        stderr_text.contains("goal 1 moved to") && stderr_text.contains("from the one asked for"),
+        "{stderr_text}"
+    );
+    assert!(stderr_text.contains("the robot does not fit at the goal"), "{stderr_text}");
     assert!(room.summary()["goals_moved"][0]["off_m"].as_f64().unwrap() > 0.5);
     let reached = &room.summary()["reached"][0];
     assert!(reached["x"].as_f64().unwrap() < 3.4, "{reached}");
@@ -222,10 +225,10 @@ fn over(n: usize, k: usize) -> f64 {
 fn coefficients_are_the_curve_and_active_constraints_are_active() {
     let room = Room::new();
     // Around the wall's end and back: corners that touch the wall.
-    let said =
+    let stderr_text =
         room.plan(&["--from=desk", "--goal=3.5,0.8,-90", "--goal=2.5,0.6,180", "--coefficients"]).unwrap();
     // For each piece, as printed: x then y, increasing powers.
-    let polynomials: Vec<Vec<f64>> = said
+    let polynomials: Vec<Vec<f64>> = stderr_text
         .lines()
         .filter_map(|line| {
             line.trim().strip_prefix("x(u) = ").or_else(|| line.trim().strip_prefix("y(u) = "))
@@ -259,8 +262,9 @@ fn coefficients_are_the_curve_and_active_constraints_are_active() {
     };
     let active = numbers(&room.out().join("constraints.csv"));
     assert!(
-        said.contains(&format!("multiplier in m^2: {}", active.len())) && !said.contains("0.00e0"),
-        "{said}"
+        stderr_text.contains(&format!("multiplier in m^2: {}", active.len()))
+            && !stderr_text.contains("0.00e0"),
+        "{stderr_text}"
     );
     assert!(!active.is_empty());
     for row in &active {
@@ -273,7 +277,7 @@ fn coefficients_are_the_curve_and_active_constraints_are_active() {
 
 /// Grey is costly: the path leads around it if the detour is short.
 #[test]
-fn grey_of_a_keep_out_mask_is_dear() {
+fn grey_of_a_keep_out_mask_has_a_high_cost() {
     let room = Room::new();
     let grey = write_mask(room.scratch.path(), "grey", (255, 30), SCALE);
     let length = |more: &[&str]| {

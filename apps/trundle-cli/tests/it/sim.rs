@@ -79,17 +79,17 @@ fn the_same_command_gives_the_same_bytes_on_any_number_of_threads() {
 #[test]
 fn way_points_are_reached_and_one_in_a_wall_is_not() {
     let scratch = tempfile::tempdir().unwrap();
-    let way = file(scratch.path(), "way.txt", "1.0 0.9 30\n");
-    let output = trundle(&["sim", "obstacles", "--follow", text(&way), "--rate", "0.5"]);
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success(), "{said}");
-    assert!(said.contains("every way-point reached") && said.contains("1 of 1"), "{said}");
+    let trajectory = file(scratch.path(), "way.txt", "1.0 0.9 30\n");
+    let output = trundle(&["sim", "obstacles", "--follow", text(&trajectory), "--rate", "0.5"]);
+    let message = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{message}");
+    assert!(message.contains("every way-point reached") && message.contains("1 of 1"), "{message}");
     let wall = file(scratch.path(), "wall.txt", "0.9 0.8 30\n-2 0.8 180\n");
     let args = ["sim", "obstacles", "--rate", "0.5", "--duration", "6", "--follow"];
     let output = trundle(&[&args[..], &[text(&wall)]].concat());
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("way-point 2 of 2 not reached"), "{said}");
+    let message = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("way-point 2 of 2 not reached"), "{message}");
 }
 
 #[test]
@@ -114,9 +114,12 @@ fn the_true_map_is_written_alone_and_read_again() {
 
 #[test]
 fn the_scenes_are_listed() {
-    let said = String::from_utf8(trundle(&["sim", "--list"]).stdout).unwrap();
+    let message = String::from_utf8(trundle(&["sim", "--list"]).stdout).unwrap();
     for name in ["room", "obstacles", "corridor-d", "office", "house", "warehouse"] {
-        assert!(said.lines().any(|line| line.trim().starts_with(name) && line.ends_with(" m")), "{said}");
+        assert!(
+            message.lines().any(|line| line.trim().starts_with(name) && line.ends_with(" m")),
+            "{message}"
+        );
     }
 }
 

@@ -32,7 +32,7 @@ fn refused(folder: &Path, name: &str, content: &str, extra: &[&str]) -> String {
     sentence.replace(&format!("{}/", folder.display()), "").trim_end().to_owned()
 }
 
-fn said(output: &Output) -> String {
+fn message(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
@@ -43,7 +43,7 @@ fn scene_files_are_driven_and_wrong_ones_name_file_and_item() {
     let scene = "[base]\nscene = \"obstacles\"\n[robot]\nstart = { x = 0.7, y = 0.7, heading_deg = 90 }\n";
     let good = file(folder, "good.toml", scene);
     let output = trundle(&["sim", text(&good), "--duration", "0.2"]);
-    assert!(output.status.success() && said(&output).contains("images"), "{}", said(&output));
+    assert!(output.status.success() && message(&output).contains("images"), "{}", message(&output));
 
     let sentence = refused(folder, "key.toml", &format!("{scene}goals = 3\n"), &[]);
     assert!(
@@ -93,8 +93,8 @@ fn a_scene_without_its_texture_is_grey_and_warned_of_once() {
     let run = |more: &[&str]| {
         let fixed = ["sim", text(&path), "--start=0.3,0.3,0", "--duration=0.1"];
         let output = trundle(&[&fixed[..], more].concat());
-        assert!(output.status.success(), "{}", said(&output));
-        said(&output)
+        assert!(output.status.success(), "{}", message(&output));
+        message(&output)
     };
     let plain = run(&[]);
     assert_eq!(plain.matches("gone.png").count(), 1, "{plain}");
@@ -109,7 +109,7 @@ fn a_map_raised_to_walls_is_driven_in_and_maps_back_to_itself() {
     let room = write_room(scratch.path());
     let back = scratch.path().join("back.yaml");
     let output = trundle(&["sim", text(&room), "--duration", "0.2", "--rate", "10", "--map", text(&back)]);
-    assert!(output.status.success(), "{}", said(&output));
+    assert!(output.status.success(), "{}", message(&output));
     let cells = |name: &str| {
         let bytes = fs::read(scratch.path().join(name)).unwrap();
         bytes[bytes.len() - 120 * 80..].to_vec()
@@ -159,7 +159,7 @@ fn faults_and_a_laser_are_recorded_and_wrong_faults_are_named() {
         "--record",
         text(&out),
     ]);
-    assert!(output.status.success(), "{}", said(&output));
+    assert!(output.status.success(), "{}", message(&output));
     let list = fs::read_to_string(out.join("rgb.txt")).unwrap();
     let images: Vec<&str> = list.lines().skip(1).map(|line| line.split(' ').nth(1).unwrap()).collect();
     assert_eq!(images.len(), 3, "the image at 0.1 s is dropped: {list}");

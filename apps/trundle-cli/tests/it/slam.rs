@@ -113,13 +113,13 @@ fn a_depth_scale_that_no_file_holds_is_found_by_the_images() {
     let slam = |more: &[&str]| {
         let common = ["slam", text(&data), "--camera", text(&camera), "--height=0.45", "--tilt=8", "--quiet"];
         let output = trundle(&[&common, more, &["--out", text(&out)]].concat());
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(0), "{said}");
-        said
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        message
     };
-    let said = slam(&[]);
-    assert!(said.contains("5000 units per metre are assumed by the images"), "{said}");
+    let message = slam(&[]);
+    assert!(message.contains("5000 units per metre are assumed by the images"), "{message}");
     assert_eq!(summary(&out)["frames_lost"], 0);
-    let said = slam(&["--depth-scale=5000"]);
-    assert!(!said.contains("depth scale"), "{said}");
+    let message = slam(&["--depth-scale=5000"]);
+    assert!(!message.contains("depth scale"), "{message}");
 }

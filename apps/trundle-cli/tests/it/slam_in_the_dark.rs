@@ -1,4 +1,4 @@
-//! `trundle slam` on a drive through the dark: all frames get a pose, and what is missing is told.
+//! `trundle slam` on a drive through the dark: all frames get a pose, and missing frames are reported.
 
 use crate::program::{summary, text, trundle};
 use std::fs;
@@ -32,7 +32,7 @@ fn track(data: &Path, out: &Path, extra: &[&str]) -> (Option<i32>, serde_json::V
 }
 
 #[test]
-fn frames_in_the_dark_are_placed_by_odometry_and_missing_ones_are_told() {
+fn frames_in_the_dark_are_placed_by_odometry_and_missing_ones_are_reported() {
     let scratch = tempfile::tempdir().unwrap();
     let data = dark_drive(scratch.path());
     let [fused, visual, bare] = ["fused", "visual", "bare"].map(|name| scratch.path().join(name));

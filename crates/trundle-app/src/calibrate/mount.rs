@@ -139,13 +139,13 @@ fn degrees(angle: Estimate) -> (f64, f64) {
     (angle.value.to_degrees(), angle.sigma.to_degrees())
 }
 
-fn not_observable(what: &'static str, found: f64, unit: &'static str, most: f64) -> CalibrationError {
+fn not_observable(what: &'static str, found: f64, unit: &'static str, max: f64) -> CalibrationError {
     CalibrationError::NotObservable {
         what,
         quantity: "its standard deviation",
         found,
         unit,
-        expected: format!("{most} {unit} or less"),
+        expected: format!("{max} {unit} or less"),
         advice: "turn on the spot by a full turn both ways and drive 1 m straight",
     }
 }

@@ -24,7 +24,7 @@ pub fn rows(manoeuvre: &Manoeuvre) -> Vec<Vec<String>> {
 pub fn amount(motion: Motion) -> String {
     match motion {
         Motion::Turn(angle) => format!("{:.1} deg", angle.to_degrees().abs()),
-        Motion::Drive(way) => format!("{:.3} m", way.abs()),
+        Motion::Drive(distance) => format!("{:.3} m", distance.abs()),
     }
 }
 
@@ -33,7 +33,7 @@ pub fn verdict(found: &Solution) -> String {
     let duration = found.manoeuvre.duration();
     let proven = if found.bound > 0.0 {
         format!(
-            ", at most {:.1} % over the least that is possible at this margin",
+            ", at most {:.1} % above the proven minimum for this clearance",
             (duration / found.bound - 1.0).max(0.0) * 100.0
         )
     } else {
@@ -53,7 +53,7 @@ pub fn steps_csv(manoeuvre: &Manoeuvre) -> String {
     let row = |step: &Step| {
         let (turn, drive) = match step.motion {
             Motion::Turn(angle) => (angle, 0.0),
-            Motion::Drive(way) => (0.0, way),
+            Motion::Drive(distance) => (0.0, distance),
         };
         [step.starts, step.lasts, turn, drive, step.to.x, step.to.y, step.to.theta]
     };

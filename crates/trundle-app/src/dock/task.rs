@@ -120,7 +120,7 @@ fn scan_refusal(log: &LaserLog, is_blind: bool) -> Option<String> {
         String::new()
     };
     is_blind.then(|| {
-        format!("no beam of the scan met anything, and what was not seen is not free: no manoeuvre is planned{cause}")
+        format!("no beam of the scan hit an obstacle, and unseen floor is not free: no manoeuvre is planned{cause}")
     })
 }
 

@@ -10,7 +10,7 @@ use trundle_estimation::FloorSearch;
 /// Images from one whose floor is fitted to the next. Source: ours.
 const FLOOR_STEP_IMAGES: usize = 5;
 
-/// An image that came.
+/// A received image.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ImageNote {
     pub arrival_s: f64,

@@ -85,7 +85,7 @@ fn scan(
     let stamp = frame.stamp();
     let (odom_from_base, base_from_camera) = poses
         .at(stamp)
-        .ok_or_else(|| format!("frame {index}: no pose about {stamp} s, or one that looks up or down"))?;
+        .ok_or_else(|| format!("frame {index}: no pose near {stamp} s, or the camera points up or down"))?;
     if let Some(mount) = base_from_camera {
         scanner.remount(mount).map_err(|invalid| format!("frame {index}: {invalid}"))?;
     }

@@ -52,7 +52,7 @@ pub(super) fn mount_hint(log: &LaserLog, counts: &ScanCounts) -> Option<String> 
     let contradiction = format!("the scans contradict the odometry at {doubted} of {all} steps");
     match better_mount(log).and_then(|mount| described(mount, log.mount)) {
         Some(mount) if is_doubted => Some(format!("{contradiction}: {mount}")),
-        Some(mount) => Some(format!("the scans fit the odometry better in another way: {mount}")),
+        Some(mount) => Some(format!("the scans fit the odometry better with another mount: {mount}")),
         None if is_doubted => Some(format!(
             "{contradiction}, and no other mount of the laser fits better; are the poses those of this robot, in m and rad?"
         )),
@@ -338,7 +338,10 @@ mod tests {
         assert_eq!(mount_hint(&drive(LaserMount::default()), &few), None);
         let behind = LaserMount { turn: std::f64::consts::PI, upside_down: false };
         let found = mount_hint(&drive(behind), &few).unwrap();
-        assert!(found.starts_with("the scans fit the odometry better in another way: the laser"), "{found}");
+        assert!(
+            found.starts_with("the scans fit the odometry better with another mount: the laser"),
+            "{found}"
+        );
     }
 
     #[test]

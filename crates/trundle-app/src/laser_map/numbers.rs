@@ -18,7 +18,7 @@ pub fn map_picture(grid: &OccupancyGrid, poses: &[(Stamp, Pose2)]) -> Vec<u8> {
     let picture = MapPicture::over(grid).polyline("path", &path, LineStyle::solid(Color::BLUE));
     let (Some((_, start)), Some((_, end))) = (poses.first(), poses.last()) else { return picture.to_png() };
     let (first, last) = (PoseStyle::named(Color::GREEN), PoseStyle::named(Color::VERMILLION));
-    // Two labels at one position would lie over each other.
+    // Two labels at one position would overlap.
     let geometry = grid.geometry();
     let side = geometry.width.max(geometry.height) as f64 * geometry.resolution;
     if start.distance(end) < MIN_LABEL_DISTANCE_SHARE * side {

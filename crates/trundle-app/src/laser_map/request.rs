@@ -99,7 +99,7 @@ pub(crate) fn depth_filter(depth: &DepthLog, motion: MotionConfig, config: Parti
 /// Standard deviation of a range of the depth camera at short distance \[m\]. Source: ours.
 const DEPTH_RANGE_NOISE_M: f64 = 0.01;
 
-/// The motion of a tracked camera: ten times as exact as that of wheels alone. The wheels' own values cannot be that small: the
+/// The motion of a tracked camera: a tenth of the noise of wheels alone. The wheels' noise cannot be that small: the
 /// drift of their heading is the same on every metre, and a filter with such values distorts its map.
 fn tracked_camera_motion() -> MotionConfig {
     MotionConfig {

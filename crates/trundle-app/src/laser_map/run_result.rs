@@ -8,7 +8,7 @@ use trundle_io::{LaserLog, empty_map_cause, no_overlap_cause, range_unit_hint};
 /// share above 0.01.
 const MAX_SHARE_WITHOUT_OVERLAP: f64 = 0.5;
 
-/// Share of the scans that pauses left out \[1\]. Above it the run missed its aim. Source: ours.
+/// Share of the scans that pauses left out \[1\]. Above it the run missed its goal or a limit. Source: ours.
 const MAX_SHARE_LEFT_OUT: f64 = 0.1;
 
 /// The result of a log.
@@ -24,7 +24,7 @@ pub struct LaserMapRun {
     pub is_interrupted: bool,
     /// Probable error of the laser's mount, where the scans contradict the odometry at many steps.
     pub mount_hint: Option<String>,
-    /// Reason why the run missed its aim; `None` if it did not.
+    /// Reason why the run missed its goal or a limit; `None` if it did not.
     pub failure: Option<String>,
 }
 

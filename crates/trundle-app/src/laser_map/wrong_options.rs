@@ -28,7 +28,7 @@ impl LaserMapRequest {
         }
     }
 
-    /// Refuses reading up to a cut of what is neither a recording nor a bag.
+    /// Refuses `recover` for a file that is neither a recording nor a bag.
     fn refuse_idle_cut(&self) -> Result<(), AppError> {
         use FileKind::{CarmenLog, Gzip, SequenceFolder, Text};
         if !self.recover || !matches!(FileKind::of(&self.log)?, CarmenLog | Gzip | SequenceFolder | Text) {

@@ -25,7 +25,7 @@ impl AnnotationStore {
     }
 
     /// Adopts the annotations that the robot applied, unless the change was sent here: the change came from a replay or another front end.
-    pub(super) fn note_obeyed(&mut self, annotations: &MapAnnotations) {
+    pub(super) fn note_executed(&mut self, annotations: &MapAnnotations) {
         if self.waiting > 0 {
             self.waiting -= 1;
         } else {

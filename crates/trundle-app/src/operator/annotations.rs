@@ -83,15 +83,15 @@ mod tests {
         operator.edit_annotations(&AnnotationEdit::SetPlace(desk())).unwrap();
         let mut report = StepReport::default();
         report.map_replaced = true;
-        link.note_obeyed(0, &report);
+        link.note_executed(0, &report);
         assert!(operator.annotations().places.is_empty());
         let door = NamedPlace { name: "door".to_owned(), ..desk() };
         operator.edit_annotations(&AnnotationEdit::SetPlace(door)).unwrap();
         let request = link.next_request().unwrap();
         link.note_request(&request);
-        let OperatorCommand::Annotate(obeyed) = request.command else { panic!("a change") };
-        assert_eq!((obeyed.places.len(), obeyed.places[0].name.as_str()), (1, "door"));
-        assert_eq!((obeyed, link.next_request()), ((*operator.annotations()).clone(), None));
+        let OperatorCommand::Annotate(executed) = request.command else { panic!("a change") };
+        assert_eq!((executed.places.len(), executed.places[0].name.as_str()), (1, "door"));
+        assert_eq!((executed, link.next_request()), ((*operator.annotations()).clone(), None));
         assert_eq!(operator.annotation_store().waiting, 0);
     }
 

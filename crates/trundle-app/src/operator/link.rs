@@ -61,7 +61,7 @@ pub enum OperatorError {
     #[error("the run is over")]
     Over,
     /// Zones or places could not be written to their file.
-    #[error("the change counts until the run ends, and is not kept: {0}")]
+    #[error("the change applies until the run ends and is not saved: {0}")]
     NotKept(String),
     /// No place has this name.
     #[error("no place '{name}'; there are: {}", if known.is_empty() { "none" } else { known })]
@@ -120,7 +120,7 @@ impl Operator {
 
     /// The newest view, without a request for its large parts: scan, image and map may be old.
     #[must_use]
-    pub fn glance(&self) -> Option<Arc<RunView>> {
+    pub fn peek(&self) -> Option<Arc<RunView>> {
         self.shared.view.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
@@ -129,7 +129,7 @@ impl Operator {
     #[must_use]
     pub fn view(&self) -> Option<Arc<RunView>> {
         self.shared.is_asked.store(true, Ordering::Relaxed);
-        self.glance()
+        self.peek()
     }
 }
 
@@ -227,13 +227,13 @@ impl OperatorLink {
     /// Notes the zones and places of a replay.
     pub(crate) fn note_request(&mut self, request: &OperatorRequest) {
         if let OperatorCommand::Annotate(annotations) = &request.command {
-            self.operator().annotation_store().note_obeyed(annotations);
+            self.operator().annotation_store().note_executed(annotations);
         }
     }
 
     /// Records the effect of the request `id`. Zones and places belong to the map: a robot on another map has none, and the file of the old
     /// ones does not change.
-    pub(crate) fn note_obeyed(&mut self, id: u64, report: &StepReport) {
+    pub(crate) fn note_executed(&mut self, id: u64, report: &StepReport) {
         if report.mission_replaced {
             self.feed.note_mission(id);
         }

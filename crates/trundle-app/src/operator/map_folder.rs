@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_folder_is_refused() {
+    fn a_path_that_is_no_folder_is_refused() {
         let place = tempfile::tempdir().unwrap();
         let file = place.path().join("a.yaml");
         std::fs::write(&file, "").unwrap();
@@ -201,7 +201,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_link_or_picture_outside_the_folder_is_refused_and_no_content_is_told() {
+    fn a_link_or_picture_outside_the_folder_is_refused_without_its_content() {
         use std::os::unix::fs::symlink;
         let (place, outside) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
         write(outside.path(), "secret", 0.05);
@@ -254,7 +254,7 @@ mod tests {
         }
         let folder = maps(place.path());
         let (send, answers) = std::sync::mpsc::channel();
-        // In a thread: a pipe that is opened as a file is would wait for ever.
+        // In a thread: the opening of a pipe blocks until a writer exists.
         std::thread::spawn(move || {
             for name in ["pipe", "piped", "folder", "large", "long", "wide"] {
                 send.send((name, folder.read(name).unwrap_err())).unwrap();

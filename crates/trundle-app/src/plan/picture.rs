@@ -102,7 +102,7 @@ fn page(pictures: [&[u8]; 3], plan: &MultiGoalPlan, limits: DriveLimits, numbers
         .figure(figure(
             "Distance field and way-points",
             field,
-            "How far everything is from the nearest obstacle; the search's path, dashed, and the way-points it was pulled to.",
+            "Distance to the nearest obstacle. Dashed: the path of the search. Solid: the way-points after string pulling.",
         ))
         .figure(figure(
             "Corridors and curve",

@@ -51,7 +51,8 @@ pub struct QueueLength {
     /// 99th percentile.
     pub p99: f64,
     /// Maximum.
-    pub most: f64,
+    #[serde(rename = "most")]
+    pub max: f64,
 }
 
 impl QueueLength {
@@ -59,7 +60,7 @@ impl QueueLength {
         // A histogram has no bin for zero: a value below 1 is zero.
         let whole = |fraction| Some(lengths.quantile(fraction)?.round());
         let (median, p99) = (whole(0.5)?, whole(0.99)?);
-        Some(Self { queue: queue.to_owned(), median, p99, most: lengths.most()? })
+        Some(Self { queue: queue.to_owned(), median, p99, max: lengths.max()? })
     }
 }
 
@@ -75,24 +76,24 @@ impl RealTimeReport {
                 control.jitter_p999_ms,
                 control.jitter_most_ms,
             ];
-            rows.push(row("control jitter: median, p99, p99.9, most".to_owned(), milliseconds(&jitter)));
+            rows.push(row("control jitter: median, p99, p99.9, max".to_owned(), milliseconds(&jitter)));
             let response = [control.response_median_ms, control.response_p999_ms, control.response_most_ms];
-            rows.push(row("reading to command: median, p99.9, most".to_owned(), milliseconds(&response)));
+            rows.push(row("reading to command: median, p99.9, max".to_owned(), milliseconds(&response)));
             rows.push(row("missed deadlines".to_owned(), control.missed_deadlines.to_string()));
         }
         let part = |part: f64| format!("{:.1} %", part * 100.0);
         rows.extend(self.load.iter().map(|load| row(format!("load of {}", load.thread), part(load.part))));
         rows.push(row("load of all".to_owned(), part(self.load_total)));
-        for QueueLength { queue, median, p99, most } in &self.queues {
-            let lengths = format!("{median}, {p99}, {most}");
-            rows.push(row(format!("waiting for {queue}: median, p99, most"), lengths));
+        for QueueLength { queue, median, p99, max } in &self.queues {
+            let lengths = format!("{median}, {p99}, {max}");
+            rows.push(row(format!("waiting for {queue}: median, p99, max"), lengths));
         }
         rows.push(row("events refused".to_owned(), self.refused.to_string()));
         rows.push(row("lines of the recording lost".to_owned(), self.lines_lost.to_string()));
         let body = &self.body;
         if let Some(late) = body.lateness {
             let late = [late.p999_ms, late.max_ms];
-            rows.push(row("simulated base late: p99.9, most".to_owned(), milliseconds(&late)));
+            rows.push(row("simulated base late: p99.9, max".to_owned(), milliseconds(&late)));
         }
         let age = [body.image_age_median_ms, body.image_age_p99_ms];
         rows.push(row("age of images on arrival: median, p99".to_owned(), milliseconds(&age)));

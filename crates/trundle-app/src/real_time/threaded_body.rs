@@ -122,7 +122,7 @@ impl EncodedBody for ThreadedBody {
     }
 
     fn send_command(&mut self, twist: Twist2) -> Result<(), AppError> {
-        // A base that is gone takes no commands; its missing readings end the run.
+        // A disconnected base takes no commands; its missing readings end the run.
         let _ = self.commands.as_ref().map(|commands| commands.send(twist));
         if let Some(arrival) = self.reading.take() {
             self.loop_timer.end(arrival);

@@ -21,14 +21,14 @@ pub struct GoalOutcome {
     pub error: Option<GoalError>,
     /// Error of the estimated pose at the end.
     pub believed: Option<GoalError>,
-    /// Error of the estimated pose that is kept with a probability of 95 %; `None` if it was not recorded.
+    /// Bound of the estimated pose's error with a probability of 95 %; `None` if it was not recorded.
     pub bound: Option<PoseBound>,
     /// Whether the robot was switched off and on again since: the time is of the run before.
     pub before_restart: bool,
 }
 
 impl GoalOutcome {
-    /// The outcomes of a run, in the order in which they came.
+    /// The outcomes of a run, in the order of their ends.
     pub fn all(run: &FinishedRun) -> Vec<Self> {
         run.tasks().filter_map(|record| Self::of(record, run)).collect()
     }

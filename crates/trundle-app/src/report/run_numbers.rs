@@ -256,7 +256,7 @@ impl RunNumbers {
         let mut rows = self.run_rows();
         rows.extend(run.log.body.rows());
         rows.push(vec!["wall clock".to_owned(), format!("{:.1} s", run.seconds)]);
-        rows.push(["stage, ms", "median", "p99", "p99.9", "most", "runs"].map(str::to_owned).to_vec());
+        rows.push(["stage, ms", "median", "p99", "p99.9", "max", "runs"].map(str::to_owned).to_vec());
         rows.extend(stage_rows(run.robot.times()));
         rows
     }

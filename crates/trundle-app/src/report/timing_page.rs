@@ -6,10 +6,10 @@ use trundle_viz::{Card, Chart, Color, Figure, Report, Table};
 
 /// Wall-clock times of every stage of a run, queues and drops: the only page that differs between a run and its replay.
 pub fn html(run: &FinishedRun, numbers: &RunNumbers, timing: Option<&RealTimeReport>) -> String {
-    let header = ["stage", "median, ms", "p99", "p99.9", "most", "runs"];
+    let header = ["stage", "median, ms", "p99", "p99.9", "max", "runs"];
     let stages =
         stage_rows(run.robot.times()).into_iter().fold(Table::new("Stages", header), Table::row).wide();
-    let report = Report::new("What it took")
+    let report = Report::new("Durations of the stages")
         .subtitle(
             "Times of the clock on the wall. In simulated time nothing waits and nothing is dropped; in real time of the \
              images that come while one is looked at only the newest is kept.",

@@ -30,14 +30,14 @@ pub struct FirstCamera {
     pub roll_deg: Option<f64>,
 }
 
-/// The pose of the first camera, and how it came about.
+/// The pose of the first camera, and its source.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FirstCameraChoice {
     /// Height, tilt and roll; the camera is above the origin.
     pub(super) mount: CameraMount,
     /// Whether a part of it is by the floor in the images.
     pub(super) is_by_floor: bool,
-    /// What the images say against the given pose, and what is done; `None` if they do not.
+    /// The contradiction between the images and the given pose, and the pose that is used; `None` without one.
     pub(super) contradiction: Option<String>,
 }
 
@@ -98,7 +98,7 @@ impl FirstCamera {
         }
     }
 
-    /// What the floor says against the given values, in words; `None` if it does not.
+    /// The contradiction between the floor and the given values, in words; `None` without one.
     pub(super) fn contradiction(
         &self,
         found: &FoundFloor,
@@ -145,13 +145,13 @@ mod tests {
         let seen = evidence(true);
         let choice = given(0.5, 8.0).completed_by(&seen);
         assert_eq!(choice.mount, seen.found.unwrap().mount);
-        let said = choice.contradiction.unwrap();
+        let message = choice.contradiction.unwrap();
         for part in
             ["height 0.5 m is given", "shows 0.449 m", "28 of 30", "floor's height, tilt and roll are used"]
         {
-            assert!(said.contains(part), "{part} in {said}");
+            assert!(message.contains(part), "{part} in {message}");
         }
-        assert!(!said.contains("tilt 8"), "{said}");
+        assert!(!message.contains("tilt 8"), "{message}");
         let tilt = given(0.45, 10.0).completed_by(&seen);
         assert!(tilt.contradiction.unwrap().contains("tilt 10 deg is given"));
     }

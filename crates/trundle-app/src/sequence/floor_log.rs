@@ -7,7 +7,7 @@ use crate::sequence_input::SequenceInput;
 /// The remedy of an unknown pose.
 const REMEDY: &str = "give --height (m), --tilt and --roll (deg)";
 
-/// Logs how the pose of the first camera came about: a warning if it may be wrong.
+/// Logs the source of the first camera's pose: a warning if the pose may be wrong.
 pub(super) fn log_choice(
     input: &SequenceInput,
     given: &FirstCamera,

@@ -157,10 +157,14 @@ mod tests {
         let camera = PinholeCamera::kinect_v2();
         let base_from_camera = mount.base_from_camera();
         DepthImage::from_fn(camera.width(), camera.height(), |x, y| {
-            let way = base_from_camera.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
-            let wall = 3.0 / way.x;
-            let down = |height: f64| if way.z < 0.0 { (height - mount.z) / way.z } else { f64::INFINITY };
-            let top = table.map(down).filter(|at| (1.0..2.0).contains(&(at * way.x)) && way.y.abs() < 0.6);
+            let direction = base_from_camera.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
+            let wall = 3.0 / direction.x;
+            let down = |height: f64| {
+                if direction.z < 0.0 { (height - mount.z) / direction.z } else { f64::INFINITY }
+            };
+            let top = table
+                .map(down)
+                .filter(|at| (1.0..2.0).contains(&(at * direction.x)) && direction.y.abs() < 0.6);
             top.unwrap_or_else(|| down(0.0)).min(wall) as f32
         })
     }
@@ -174,10 +178,10 @@ mod tests {
         let camera = PinholeCamera::kinect_v2();
         let base_from_camera = mount.base_from_camera();
         DepthImage::from_fn(camera.width(), camera.height(), |x, y| {
-            let way = base_from_camera.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
-            let floor = if way.z < 0.0 { -mount.z / way.z } else { f64::INFINITY };
-            let ramp = (mount.z + slope) / (slope * way.x - way.z);
-            let depth = if floor * way.x <= 1.0 { floor } else { ramp };
+            let direction = base_from_camera.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
+            let floor = if direction.z < 0.0 { -mount.z / direction.z } else { f64::INFINITY };
+            let ramp = (mount.z + slope) / (slope * direction.x - direction.z);
+            let depth = if floor * direction.x <= 1.0 { floor } else { ramp };
             if (0.0..4.5).contains(&depth) { ((1e3 * depth).round() / 1e3) as f32 } else { 0.0 }
         })
     }
@@ -219,8 +223,8 @@ mod tests {
         for up_deg in [0.0, 9.0, 13.0, 20.0] {
             let looks_up = mount(2.5, -up_deg, 0.0).base_from_camera();
             let wall = DepthImage::from_fn(camera.width(), camera.height(), |x, y| {
-                let way = looks_up.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
-                (2.0 / way.x) as f32
+                let direction = looks_up.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
+                (2.0 / direction.x) as f32
             });
             for tilt in START_TILTS_DEG {
                 assert_eq!(

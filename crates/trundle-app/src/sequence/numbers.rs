@@ -10,7 +10,7 @@ use trundle_io::Summary;
 use trundle_runtime::CameraMount;
 use trundle_slam::ReadoutEstimate;
 
-/// The table of a tracked sequence, all but the wall clock's part.
+/// The table of a tracked sequence, without the part of the wall clock.
 #[must_use]
 pub fn sequence_rows(
     input: &SequenceInput,

@@ -15,9 +15,9 @@ use trundle_io::{InputFiles, IoError, OutputFolder, trajectory_text, write_map_a
 pub struct SequenceOutput {
     /// The folder.
     pub folder: PathBuf,
-    /// The table, all but the wall clock's part.
+    /// The table, without the part of the wall clock.
     pub rows: Vec<Vec<String>>,
-    /// Why the run missed its aim, with the likely cause; `None` if it did not.
+    /// Why the run missed its goal or a limit, with the likely cause; `None` if it did not.
     pub failure: Option<String>,
     /// Files that could not be written, as an error; `None` if all were.
     pub incomplete: Option<AppError>,

@@ -54,7 +54,7 @@ impl SequenceRecorder {
         }
         self.failure = self.record_frame(image, report, slam).err();
         if let Some(failure) = &self.failure {
-            tracing::warn!("{failure}; the recording ends here, tracking goes on");
+            tracing::warn!("{failure}; the recording ends here, tracking continues");
         }
     }
 

@@ -24,7 +24,7 @@ pub fn page(
     let posed = c.ok + c.weak;
     let frames = posed + c.dead_reckoned + c.lost;
     let placed = run.trajectory.poses.len();
-    let verdict = format!("{posed} of {frames} frames located by sight, {placed} with a pose.");
+    let verdict = format!("{posed} of {frames} frames located by the images, {placed} with a pose.");
     let mut charts =
         vec![Figure::png("Trajectory of the camera", &path_picture(trajectory, comparison)).wide()];
     charts.extend(comparison.map(error_chart));
@@ -64,10 +64,10 @@ fn visual_map(run: &SequenceRun) -> Figure {
     let KeyframeLinks { covisible, loops } = KeyframeLinks::of(&run.slam);
     let landmarks: Vec<Vector3> = run.slam.landmarks().collect();
     let keyframes: Vec<Vector3> = run.slam.keyframes().map(|(_, _, pose)| pose.translation).collect();
-    let way: Vec<Vector3> = run.slam.trajectory().iter().map(|(_, pose)| pose.translation).collect();
+    let path: Vec<Vector3> = run.slam.trajectory().iter().map(|(_, pose)| pose.translation).collect();
     let (png, legend) = visual_map_picture(&VisualMapScene {
         landmarks: &landmarks,
-        way: &way,
+        path: &path,
         keyframes: &keyframes,
         covisible: &covisible,
         loops: &loops,

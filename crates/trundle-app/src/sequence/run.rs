@@ -197,7 +197,7 @@ impl SequenceRun {
         SequenceTrajectory::fused(&self.slam, &self.odometry.motions, mount, scans.as_ref())
     }
 
-    /// Reason why the run missed its aim, with the likely cause; `None` if it did not.
+    /// Reason why the run missed its goal or a limit, with the likely cause; `None` if it did not.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
         let depth = self.depth.0.problem(self.depth.1);

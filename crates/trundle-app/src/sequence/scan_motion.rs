@@ -10,7 +10,7 @@ use trundle_runtime::LevelMap;
 /// Number of obstacle points in a scan below which it is not matched. Source: ours.
 const MIN_SCAN_HITS: usize = 30;
 /// Length of a run of frames that no image located, below which wheels are more exact than scans \[m\]. Source: ours; a scan match is
-/// 2 cm off, and wheels are that after 1 m (`way_noise`).
+/// 2 cm off, and wheels are that after 1 m (`distance_noise`).
 const MIN_SCAN_PATH_M: f64 = 1.0;
 /// Time between two scans up to which the later one is matched with the map of the earlier ones \[s\]. After a longer time another map
 /// begins. Source: ours, five scans.

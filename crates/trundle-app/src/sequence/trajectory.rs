@@ -5,7 +5,7 @@ use trundle_core::{CameraMotion, Invalid, Pose3, Stamp};
 use trundle_estimation::{MapPose, SequenceFrame, fuse_frames};
 use trundle_slam::{FramePose, RgbdSlam};
 
-/// Share of the frames without a pose \[1\]. Above it the run missed its aim. Source: ours.
+/// Share of the frames without a pose \[1\]. Above it the run missed its goal or a limit. Source: ours.
 const MAX_MISSING_SHARE: f64 = 0.1;
 /// Number of the map whose frame is level, with the first camera at its given pose: the first map of a tracker. Source: `trundle-slam`
 /// numbers maps from 0.

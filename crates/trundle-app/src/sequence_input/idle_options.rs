@@ -53,15 +53,15 @@ mod tests {
         let mut named = plain.clone();
         named.topics.depth_topic = Some("/depth".to_owned());
         let cut = SequenceOptions { recover: true, ..plain.clone() };
-        let said =
+        let message =
             |options: &SequenceOptions<'_>, kind| options.refuse_idle(kind).err().map(|e| e.to_string());
         let folder = FileKind::SequenceFolder;
-        let topic = said(&named, folder).unwrap();
+        let topic = message(&named, folder).unwrap();
         assert!(topic.contains("--depth-topic /depth has no effect on in, expected a ROS 2 bag"), "{topic}");
-        assert!(said(&named, FileKind::TrundleRecording).is_some());
-        let recover = said(&cut, folder).unwrap();
+        assert!(message(&named, FileKind::TrundleRecording).is_some());
+        let recover = message(&cut, folder).unwrap();
         assert!(recover.contains("--recover has no effect on in, expected a recording"), "{recover}");
-        assert_eq!(said(&cut, FileKind::TrundleRecording), None);
-        assert_eq!(said(&plain, folder), None);
+        assert_eq!(message(&cut, FileKind::TrundleRecording), None);
+        assert_eq!(message(&plain, folder), None);
     }
 }

@@ -4,7 +4,7 @@ use crate::AppError;
 use std::path::{Path, PathBuf};
 use trundle_surface::SurfaceConfig;
 
-/// Side of an octree's voxel over that of the surface \[1\]: planners in space need less detail than eyes. Source: ours.
+/// Side of an octree's voxel over that of the surface \[1\]: planners in three dimensions need less detail than a display. Source: ours.
 const OCTREE_RATIO: f64 = 2.5;
 /// Smallest side of an octree's voxel and of a cell of the height map \[m\]. Source: ours.
 const MIN_CELL_M: f64 = 0.05;

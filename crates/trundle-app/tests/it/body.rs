@@ -62,7 +62,7 @@ impl RobotBody for StillBody {
 
     fn next_event(&mut self) -> io::Result<Option<SensorEvent>> {
         match self.events.pop_front() {
-            None if self.fails => Err(io::Error::other("the sensor bus is gone")),
+            None if self.fails => Err(io::Error::other("the sensor bus is lost")),
             event => Ok(event),
         }
     }

@@ -148,8 +148,8 @@ fn the_scans_of_a_recorded_laser_make_a_log() {
     let input = read_log(&map_request(&file, false), &()).unwrap();
     assert!(input.depth.is_none());
     let (first, last) = (&input.log.scans[0], input.log.scans.last().unwrap());
-    let way = last.odom_from_base.position() - first.odom_from_base.position();
-    assert!((way - Vector2::new(way.norm(), 0.0)).norm() < 1e-9 && way.norm() > 0.3, "{way}");
+    let offset = last.odom_from_base.position() - first.odom_from_base.position();
+    assert!((offset - Vector2::new(offset.norm(), 0.0)).norm() < 1e-9 && offset.norm() > 0.3, "{offset}");
     assert_eq!(first.odom_from_base, Pose2::IDENTITY);
     let refusal = SequenceInput::open(&options(&file, false)).err().unwrap().to_string();
     assert!(refusal.contains("the recording holds no images"), "{refusal}");

@@ -115,7 +115,7 @@ fn a_disk_short_of_space_ends_the_recording_and_not_the_run() {
     let mut body = StillBody::new(50);
     let run = run_on_body(&setup(), &mut body, recorder, RunLog::default(), Progress::hidden()).unwrap();
     assert_eq!(body.commands.len(), 50);
-    assert!(run.recording.error.is_none(), "what is recorded is whole");
+    assert!(run.recording.error.is_none(), "the recording is complete");
     let recording = folder.commit().unwrap().join("recording.mcap");
     assert_eq!(RecordingReader::open(&recording).unwrap().count(), 0);
 }

@@ -47,7 +47,7 @@ fn the_user_ends_a_run_and_the_base_gets_a_stop() {
 #[test]
 fn failures_of_the_body_end_the_run_with_its_words() {
     let error = |mut body: StillBody| run(&setup(), &mut body).err().unwrap().to_string();
-    assert_eq!(error(StillBody { fails: true, ..StillBody::new(10) }), "the sensor bus is gone");
+    assert_eq!(error(StillBody { fails: true, ..StillBody::new(10) }), "the sensor bus is lost");
     assert_eq!(error(StillBody { refuses: true, ..StillBody::new(10) }), "the base is in charge mode");
 }
 

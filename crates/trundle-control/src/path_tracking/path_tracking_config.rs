@@ -35,7 +35,7 @@ impl PathTrackingConfig {
     /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is outside its range, or the least gain is above the most.
+    /// When a number is outside its range, or the minimum gain is above the maximum.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("tracking.k_cross", self.k_cross, "1/m^2", 0.01, 100.0)?;
         require_in("tracking.damping", self.damping, "", 0.3, 3.0)?;

@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_hold_says_what_to_do() {
+    fn each_hold_has_a_remedy_in_its_text() {
         let holds = [
             (MotionHold::WheelDrop, "put the robot on the floor"),
             (MotionHold::OverCurrent, "free the wheel"),

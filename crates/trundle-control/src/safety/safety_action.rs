@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_reason_says_why_in_numbers() {
+    fn every_reason_has_its_numbers_in_the_text() {
         let stop = SafetyAction::Stop(StopReason::StaleImage { age: 0.712 });
         assert_eq!(stop.to_string(), "stop: the newest image or scan that shows something is 0.71 s old");
         let slow =

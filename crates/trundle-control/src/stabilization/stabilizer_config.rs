@@ -31,9 +31,9 @@ pub struct StabilizerConfig {
     /// Turn rate per heading error in turns on the spot, 1/s, 0.1 to 10. Default 2.5 (ours).
     pub k_turn: f64,
     /// Allowed distance from the goal, m, 0.001 to 1. The approach ends at 0.4 of this distance and is repeated beyond it. A smaller value
-    /// takes longer. Default 0.01.
+    /// takes longer. Default 0.01 (ours).
     pub position_tolerance: f64,
-    /// Allowed heading error, rad, 0.001 to 1. The turn ends at half of it. Default 0.0087 (0.5 deg).
+    /// Allowed heading error, rad, 0.001 to 1. The turn ends at half of it. Default 0.0087 (0.5 deg; ours).
     pub heading_tolerance: f64,
     /// Error at which a robot at its goal moves again, in tolerances, 1 to 100. Default 2.5 (ours).
     pub release: f64,

@@ -51,8 +51,8 @@ fn last(errors: &[TrackingError]) -> TrackingError {
 /// The largest of the last second: distance m, heading rad.
 fn tail(errors: &[TrackingError]) -> (f64, f64) {
     let tail = &errors[errors.len() - (1.0 / DT) as usize..];
-    let most = |f: &dyn Fn(&TrackingError) -> f64| tail.iter().map(f).fold(0.0, f64::max);
-    (most(&|e| e.distance()), most(&|e| e.heading.abs()))
+    let max = |f: &dyn Fn(&TrackingError) -> f64| tail.iter().map(f).fold(0.0, f64::max);
+    (max(&|e| e.distance()), max(&|e| e.heading.abs()))
 }
 
 proptest! {

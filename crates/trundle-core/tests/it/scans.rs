@@ -54,7 +54,7 @@ proptest! {
     }
 
     #[test]
-    fn only_hits_have_an_obstacle_and_it_stands_unless_said_otherwise(scan in any_scan()) {
+    fn only_hits_have_an_obstacle_and_its_default_kind_is_standing(scan in any_scan()) {
         for (i, beam) in scan.beams().iter().enumerate() {
             let expected = matches!(beam, Beam::Hit { .. }).then_some(ObstacleKind::Standing);
             prop_assert_eq!(scan.obstacle(i), expected);
@@ -87,7 +87,7 @@ proptest! {
 }
 
 #[test]
-fn a_scan_that_says_that_nothing_is_free_has_no_free_span() {
+fn a_scan_without_free_floor_has_no_free_span() {
     let parts =
         ScanParts { beams: vec![Beam::Hit { range: 2.0 }], free: Some(vec![]), ..ScanParts::default() };
     let scan = Scan::from_parts(Stamp::default(), Vector2::zeros(), (0.0, 0.1), parts).unwrap();

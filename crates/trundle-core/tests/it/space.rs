@@ -113,8 +113,8 @@ proptest! {
         let motion = CameraMotion::of_base((Pose2::new(x, 0.1, t), planar), base_from_camera());
         let covariance = motion.covariance.unwrap();
         prop_assert_eq!(covariance, covariance.transpose());
-        let least = covariance.symmetric_eigenvalues().min();
-        prop_assert!(least > -1e-12 * covariance.norm(), "{}", least);
+        let min = covariance.symmetric_eigenvalues().min();
+        prop_assert!(min > -1e-12 * covariance.norm(), "{}", min);
     }
 }
 

@@ -91,7 +91,7 @@ impl<'s, 'a> FreeHeadings<'s, 'a> {
                     continue;
                 };
                 let distance = (self.center(node.cell) - pose.position()).norm() + self.side * turn.abs();
-                if best.is_none_or(|(least, _)| distance < least) {
+                if best.is_none_or(|(min, _)| distance < min) {
                     best = Some((distance, node));
                 }
             }

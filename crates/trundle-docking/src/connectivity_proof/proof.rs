@@ -126,7 +126,7 @@ fn nearest_blocker(headings: &mut FreeHeadings<'_, '_>, visited: &[Node], to: &P
         let ahead = wrap_angle(to.theta - middle).clamp(-gap.length / 2.0, gap.length / 2.0);
         let pose = Pose2::new(headings.center(node.cell).x, headings.center(node.cell).y, middle + ahead);
         let distance = pose.distance(to) + arm * wrap_angle(to.theta - pose.theta).abs();
-        if best.is_none_or(|(least, _)| distance < least) {
+        if best.is_none_or(|(min, _)| distance < min) {
             best = Some((distance, pose));
         }
     }

@@ -22,7 +22,7 @@ pub struct ProblemAnswer {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathPiece {
     /// Distance along the path, m, backward negative; 0 for a turn in place.
-    pub way: f64,
+    pub distance: f64,
     /// Change of heading, rad, counter-clockwise positive; 0 for a straight.
     pub turn: f64,
 }
@@ -30,8 +30,8 @@ pub struct PathPiece {
 impl From<Motion> for PathPiece {
     fn from(motion: Motion) -> Self {
         match motion {
-            Motion::Turn(turn) => Self { way: 0.0, turn },
-            Motion::Drive(way) => Self { way, turn: 0.0 },
+            Motion::Turn(turn) => Self { distance: 0.0, turn },
+            Motion::Drive(distance) => Self { distance, turn: 0.0 },
         }
     }
 }
@@ -44,19 +44,19 @@ impl PathPiece {
 
     /// Pose of a base that started at `from`, after `part` (0 to 1) of the piece.
     pub fn after(&self, from: &Pose2, part: f64) -> Pose2 {
-        from.advance(Twist2::new(self.way * part, self.turn * part), 1.0)
+        from.advance(Twist2::new(self.distance * part, self.turn * part), 1.0)
     }
 
     /// Minimum time from rest to rest, s: of its distance or of its turn, whichever is longer.
     pub fn time(&self, limits: &MotionLimits) -> f64 {
-        limits.drive_time(self.way).max(limits.turn_time(self.turn))
+        limits.drive_time(self.distance).max(limits.turn_time(self.turn))
     }
 }
 
 /// Time of a path, s: every piece from rest to rest, with a pause (`switch_time`) between two, except for pieces that continue in the same
 /// direction.
 pub fn time_of(path: &[PathPiece], limits: &MotionLimits) -> f64 {
-    let pauses = path.windows(2).filter(|pair| pair[0].way * pair[1].way <= 0.0).count();
+    let pauses = path.windows(2).filter(|pair| pair[0].distance * pair[1].distance <= 0.0).count();
     path.iter().map(|piece| piece.time(limits)).sum::<f64>() + pauses as f64 * limits.switch_time
 }
 
@@ -72,10 +72,10 @@ pub fn write_answers(answers: &[ProblemAnswer]) -> String {
 fn one(answer: &ProblemAnswer, text: &mut String) -> std::fmt::Result {
     writeln!(text, "\nproblem {}", answer.problem)?;
     let Some(path) = &answer.path else { return writeln!(text, "impossible") };
-    path.iter().try_for_each(|piece| match (piece.way, piece.turn) {
+    path.iter().try_for_each(|piece| match (piece.distance, piece.turn) {
         (0.0, turn) => writeln!(text, "turn {}", turn.to_degrees()),
-        (way, 0.0) => writeln!(text, "drive {way}"),
-        (way, turn) => writeln!(text, "arc {way} {}", turn.to_degrees()),
+        (distance, 0.0) => writeln!(text, "drive {distance}"),
+        (distance, turn) => writeln!(text, "arc {distance} {}", turn.to_degrees()),
     })
 }
 
@@ -100,11 +100,11 @@ pub fn parse_answers(text: &str) -> Result<Vec<ProblemAnswer>, Invalid> {
         }
         let answer = answers.last_mut().ok_or_else(|| refused(number, word, "`problem NAME` first"))?;
         let piece = match word {
-            "turn" => PathPiece { way: 0.0, turn: floats(number, rest, 1)?[0].to_radians() },
-            "drive" => PathPiece { way: floats(number, rest, 1)?[0], turn: 0.0 },
+            "turn" => PathPiece { distance: 0.0, turn: floats(number, rest, 1)?[0].to_radians() },
+            "drive" => PathPiece { distance: floats(number, rest, 1)?[0], turn: 0.0 },
             "arc" => {
                 let n = floats(number, rest, 2)?;
-                PathPiece { way: n[0], turn: n[1].to_radians() }
+                PathPiece { distance: n[0], turn: n[1].to_radians() }
             }
             "impossible" => {
                 answer.path = None;
@@ -127,9 +127,9 @@ mod tests {
     #[test]
     fn written_answers_are_read_back() {
         let path = vec![
-            PathPiece { way: 0.0, turn: 0.5 },
-            PathPiece { way: -0.25, turn: 0.0 },
-            PathPiece { way: 0.1, turn: -0.2 },
+            PathPiece { distance: 0.0, turn: 0.5 },
+            PathPiece { distance: -0.25, turn: 0.0 },
+            PathPiece { distance: 0.1, turn: -0.2 },
         ];
         let answers = [
             ProblemAnswer { problem: "a".to_owned(), path: Some(path) },
@@ -142,7 +142,7 @@ mod tests {
             assert_eq!((&a.problem, a.path.is_some()), (&b.problem, b.path.is_some()));
             let pieces = |answer: &ProblemAnswer| answer.path.clone().unwrap_or_default();
             for (p, q) in pieces(a).iter().zip(&pieces(b)) {
-                assert!(p.way == q.way && (p.turn - q.turn).abs() < 1e-15);
+                assert!(p.distance == q.distance && (p.turn - q.turn).abs() < 1e-15);
             }
         }
     }

@@ -56,7 +56,7 @@ pub fn parse(text: &str) -> Result<Vec<Problem>, Invalid> {
         other => return Err(refused(1, other.map_or("", |(_, line)| line), HEADER)),
     }
     let mut problems: Vec<Problem> = Vec::new();
-    let (mut given, mut began) = (Given::default(), 1);
+    let (mut given, mut began) = (ReadParts::default(), 1);
     for (number, line) in lines {
         let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
         if word == "problem" {
@@ -66,7 +66,7 @@ pub fn parse(text: &str) -> Result<Vec<Problem>, Invalid> {
             if rest.trim().is_empty() {
                 return Err(refused(number, line, "problem NAME"));
             }
-            (given, began) = (Given::default(), number);
+            (given, began) = (ReadParts::default(), number);
             problems.push(empty(rest.trim()));
             continue;
         }
@@ -106,13 +106,13 @@ pub fn parse(text: &str) -> Result<Vec<Problem>, Invalid> {
 
 /// Parts of a problem that have been read.
 #[derive(Debug, Clone, Copy, Default)]
-struct Given {
+struct ReadParts {
     footprint: bool,
     start: bool,
     goal: bool,
 }
 
-impl Given {
+impl ReadParts {
     fn note(&mut self, word: &str) {
         self.footprint |= word == "footprint" || word == "disc";
         self.start |= word == "start";

@@ -61,28 +61,28 @@ impl Hong24Method<'_> {
         for turn in self.turns(pose).await {
             let turned = Pose2::new(pose.x, pose.y, pose.theta + turn);
             for sign in [1.0, -1.0] {
-                let (way, left) = self.min_lateral(&turned, goal, sign).await;
+                let (distance, left) = self.min_lateral(&turned, goal, sign).await;
                 if left >= deviation - self.config.lateral_threshold / 2.0 {
                     continue;
                 }
-                let time = self.limits.turn_time(turn) + self.limits.drive_time(way);
+                let time = self.limits.turn_time(turn) + self.limits.drive_time(distance);
                 let cost = self.config.time_weight * time + self.config.lateral_weight * left;
-                if best.is_none_or(|(least, _, _)| cost < least - COST_TIE) {
-                    best = Some((cost, turn, way));
+                if best.is_none_or(|(min, _, _)| cost < min - COST_TIE) {
+                    best = Some((cost, turn, distance));
                 }
             }
         }
-        best.map(|(_, turn, way)| vec![Motion::Turn(turn), Motion::Drive(way)])
+        best.map(|(_, turn, distance)| vec![Motion::Turn(turn), Motion::Drive(distance)])
     }
 
     /// Every sampled free turn, in each direction up to the first contact.
     async fn turns(&self, pose: &Pose2) -> Vec<f64> {
         let step = self.config.angle_step;
-        let most = (std::f64::consts::PI / step).floor() as usize;
+        let max = (std::f64::consts::PI / step).floor() as usize;
         let mut turns = vec![0.0];
         for sign in [-1.0, 1.0] {
             let turn = |i: usize| sign * i as f64 * step;
-            let free = self.free_samples(most, |i| Motion::Turn(turn(i)).after(*pose, turn(i))).await;
+            let free = self.free_samples(max, |i| Motion::Turn(turn(i)).after(*pose, turn(i))).await;
             turns.extend((1..=free).map(turn));
         }
         turns
@@ -93,13 +93,13 @@ impl Hong24Method<'_> {
         let samples = (self.config.reach / self.config.distance_step).floor() as usize;
         let mut best = (0.0, f64::INFINITY);
         for i in 1..=samples {
-            let way = sign * i as f64 * self.config.distance_step;
-            let pose = Motion::Drive(way).after(*from, way);
+            let distance = sign * i as f64 * self.config.distance_step;
+            let pose = Motion::Drive(distance).after(*from, distance);
             let left = (goal.inverse() * pose).y.abs();
             if left >= best.1 || !self.is_free(&pose).await {
                 break;
             }
-            best = (way, left);
+            best = (distance, left);
         }
         best
     }
@@ -108,10 +108,11 @@ impl Hong24Method<'_> {
     async fn longitudinal(&self, pose: &Pose2, goal: &Pose2) -> Option<Vec<Motion>> {
         let turn = self.turn_to(pose, goal.theta).await?;
         let turned = Pose2::new(pose.x, pose.y, goal.theta);
-        let way = -(goal.inverse() * *pose).x;
-        let samples = (way.abs() / self.config.distance_step).ceil().max(1.0);
-        let at = |i: usize| way * i as f64 / samples;
-        let free = self.free_samples(samples as usize, |i| Motion::Drive(way).after(turned, at(i))).await;
+        let distance = -(goal.inverse() * *pose).x;
+        let samples = (distance.abs() / self.config.distance_step).ceil().max(1.0);
+        let at = |i: usize| distance * i as f64 / samples;
+        let free =
+            self.free_samples(samples as usize, |i| Motion::Drive(distance).after(turned, at(i))).await;
         (at(free).abs() > self.config.longitudinal_threshold / 2.0)
             .then(|| vec![Motion::Turn(turn), Motion::Drive(at(free))])
     }

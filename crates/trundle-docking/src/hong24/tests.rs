@@ -96,7 +96,7 @@ fn the_chosen_pair_has_the_least_cost_of_all_sampled_pairs() {
         let motions = moved(&[], &config, start);
         let [Motion::Turn(turn), Motion::Drive(distance)] = motions[..] else { panic!("{motions:?}") };
         // Every pair: the point D of a straight is its sample of minimum lateral deviation.
-        let mut least = f64::INFINITY;
+        let mut min = f64::INFINITY;
         for i in -31..=31 {
             for sign in [1.0, -1.0] {
                 let left = |k: i32| {
@@ -109,13 +109,13 @@ fn the_chosen_pair_has_the_least_cost_of_all_sampled_pairs() {
                 };
                 let d = (1..=16).take_while(|&k| k == 1 || left(k) < left(k - 1)).last().unwrap();
                 if left(d) < start.y.abs() - config.lateral_threshold / 2.0 {
-                    least = least.min(cost(0.1 * f64::from(i), sign * 0.05 * f64::from(d)));
+                    min = min.min(cost(0.1 * f64::from(i), sign * 0.05 * f64::from(d)));
                 }
             }
         }
         assert!(
-            (cost(turn, distance) - least).abs() < 1e-9,
-            "{motions:?} costs {}, not {least}",
+            (cost(turn, distance) - min).abs() < 1e-9,
+            "{motions:?} costs {}, not {min}",
             cost(turn, distance)
         );
     }
@@ -169,7 +169,9 @@ fn recovery_moves_alternate_between_back_and_forward() {
     let (config, pose) = (Hong24Config::default(), Pose2::new(0.0, 0.2, 0.0));
     for (recoveries, distance) in [(0, -0.1), (1, 0.1), (2, -0.1), (3, 0.1)] {
         match decided(&sleeve(), &config, pose, recoveries) {
-            Decision::Recover(Motion::Drive(way)) => assert!((way - distance).abs() < 1e-12, "{way}"),
+            Decision::Recover(Motion::Drive(length)) => {
+                assert!((length - distance).abs() < 1e-12, "{length}")
+            }
             other => panic!("{recoveries}: {other:?}"),
         }
     }
@@ -180,7 +182,9 @@ fn a_recovery_goes_the_other_way_where_its_own_is_blocked_and_is_stuck_between_b
     let (config, pose) = (Hong24Config::default(), Pose2::new(0.0, 0.2, 0.0));
     let (mut behind, front) = (sleeve(), Obstacle::Segment(at(0.305, 0.0), at(0.305, 0.4)));
     behind.push(Obstacle::Segment(at(-0.305, 0.0), at(-0.305, 0.4)));
-    assert!(matches!(decided(&behind, &config, pose, 0), Decision::Recover(Motion::Drive(way)) if way > 0.0));
+    assert!(
+        matches!(decided(&behind, &config, pose, 0), Decision::Recover(Motion::Drive(length)) if length > 0.0)
+    );
     behind.push(front);
     assert_eq!(decided(&behind, &config, pose, 0), Decision::Stuck);
 }

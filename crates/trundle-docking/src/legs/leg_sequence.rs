@@ -15,8 +15,8 @@ impl Legs {
     /// Lower bound of the time of these legs, s: every shorter turn counts as free.
     pub fn min_time(&self, query: &DockingQuery) -> f64 {
         let (mut time, mut heading) = (-query.limits.switch_time, query.start.theta);
-        for &(next, way) in &self.0 {
-            time += query.turn_cost(wrap_angle(next - heading)) + query.drive_cost(way);
+        for &(next, distance) in &self.0 {
+            time += query.turn_cost(wrap_angle(next - heading)) + query.drive_cost(distance);
             heading = next;
         }
         (time + query.turn_cost(wrap_angle(query.goal.theta - heading))).max(0.0)
@@ -26,15 +26,15 @@ impl Legs {
     pub fn motions(&self, query: &DockingQuery, space: &mut ContactSpace<'_>) -> Option<(f64, Vec<Motion>)> {
         let (mut motions, mut pose) = (Vec::with_capacity(2 * self.0.len() + 1), query.start);
         let mut time = -query.limits.switch_time;
-        for (i, &(heading, way)) in self.0.iter().enumerate() {
+        for (i, &(heading, distance)) in self.0.iter().enumerate() {
             let turn = free_turn(space, &pose, heading)?;
             pose = Pose2::new(pose.x, pose.y, heading);
-            if !space.drive(&pose, way.abs() + 0.01).allows(way) {
+            if !space.drive(&pose, distance.abs() + 0.01).allows(distance) {
                 return None;
             }
-            time += query.turn_cost(turn) + query.drive_cost(way);
-            motions.extend([Motion::Turn(turn), Motion::Drive(way)]);
-            let p = pose.position() + pose.direction() * way;
+            time += query.turn_cost(turn) + query.drive_cost(distance);
+            motions.extend([Motion::Turn(turn), Motion::Drive(distance)]);
+            let p = pose.position() + pose.direction() * distance;
             pose = if i + 1 < self.0.len() {
                 Pose2 { x: p.x, y: p.y, ..pose }
             } else {
@@ -53,8 +53,8 @@ impl Legs {
     /// Pose of the base after each leg from `start`, with the leg's heading.
     pub fn poses(&self, start: &Pose2) -> impl Iterator<Item = Pose2> + '_ {
         let mut at = start.position();
-        self.0.iter().map(move |&(heading, way)| {
-            at += Vector2::new(heading.cos(), heading.sin()) * way;
+        self.0.iter().map(move |&(heading, distance)| {
+            at += Vector2::new(heading.cos(), heading.sin()) * distance;
             Pose2::new(at.x, at.y, heading)
         })
     }

@@ -23,8 +23,8 @@ impl DockingQuery {
     }
 
     /// Time of a straight move and the following pause, s; 0 without a move.
-    pub fn drive_cost(&self, way: f64) -> f64 {
-        if way.abs() < 1e-9 { 0.0 } else { self.limits.drive_time(way) + self.limits.switch_time }
+    pub fn drive_cost(&self, distance: f64) -> f64 {
+        if distance.abs() < 1e-9 { 0.0 } else { self.limits.drive_time(distance) + self.limits.switch_time }
     }
 
     /// Midpoint of start and goal, m.

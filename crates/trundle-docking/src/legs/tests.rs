@@ -58,8 +58,8 @@ proptest! {
     #[test]
     fn the_poses_of_legs_lie_at_their_corners_with_their_headings(start in any_pose(), legs in any_legs()) {
         let mut from = start.position();
-        for (pose, &(heading, way)) in legs.poses(&start).zip(&legs.0) {
-            prop_assert!(((pose.position() - from).norm() - way.abs()).abs() < 1e-9);
+        for (pose, &(heading, distance)) in legs.poses(&start).zip(&legs.0) {
+            prop_assert!(((pose.position() - from).norm() - distance.abs()).abs() < 1e-9);
             prop_assert!((pose.theta - heading).abs() < 1e-12);
             from = pose.position();
         }

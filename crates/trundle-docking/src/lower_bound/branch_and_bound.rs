@@ -61,17 +61,17 @@ impl Ord for Family {
     }
 }
 
-/// Raises the bound, and improves the legs if a box contains better ones. Ends when both differ by at most `gap` (a part), when `most`
+/// Raises the bound, and improves the legs if a box contains better ones. Ends when both differ by at most `gap` (a part), when `max`
 /// boxes have been expanded, or when [`ContactSpace::work`] reaches `limit`.
 pub async fn improve(
     query: &DockingQuery,
     space: &mut ContactSpace<'_>,
     best: Option<(f64, Legs)>,
     gap: f64,
-    (most, limit): (usize, u64),
+    (max, limit): (usize, u64),
 ) -> Bounded {
     let free = Bounding { query, region: region(query), start: FULL_TURN, goal: FULL_TURN, shrunk: None };
-    let (spare, used) = free.min_free_time(most / 4);
+    let (spare, used) = free.min_free_time(max / 4);
     let shrunk = ShrunkHulls::new(space);
     let (start, goal) = (space.turn(&query.start), space.turn(&query.goal));
     let mut bounding = Bounding { query, region: region(query), start, goal, shrunk: Some(shrunk) };
@@ -89,7 +89,7 @@ pub async fn improve(
         let open = queue.peek().map_or(f64::INFINITY, |family: &Family| family.bound);
         known.bound = open.min(more).min(straight).min(time);
         let done = known.bound >= time * (1.0 - gap) || known.bound < open;
-        if done || known.boxes >= most || space.work() >= limit {
+        if done || known.boxes >= max || space.work() >= limit {
             return known;
         }
         let Some(family) = queue.pop() else { return known };
@@ -151,7 +151,7 @@ impl Bounding<'_, '_> {
 
     /// Lower bound of the motions' time alone (no pauses) over all manoeuvres of up to two legs without obstacles, and the number
     /// of boxes expanded.
-    fn min_free_time(&self, most: usize) -> (f64, usize) {
+    fn min_free_time(&self, max: usize) -> (f64, usize) {
         let calm = DockingQuery {
             limits: crate::motion::limits::MotionLimits { switch_time: 0.0, ..self.query.limits },
             ..*self.query
@@ -160,7 +160,7 @@ impl Bounding<'_, '_> {
             Bounding { query: &calm, region: self.region, start: self.start, goal: self.goal, shrunk: None };
         let rest = calm.query.goal.position() - calm.query.start.position();
         let toward = if rest.norm() > 1e-9 { rest.y.atan2(rest.x) } else { calm.query.start.theta };
-        let legs = |heading, way| Legs(vec![(heading, way)]).min_time(calm.query);
+        let legs = |heading, distance| Legs(vec![(heading, distance)]).min_time(calm.query);
         let mut time =
             legs(toward, rest.norm()).min(legs(wrap_angle(toward + std::f64::consts::PI), -rest.norm()));
         let mut queue = BinaryHeap::new();
@@ -173,7 +173,7 @@ impl Bounding<'_, '_> {
         let mut boxes = 0;
         while let Some(family) = queue.pop() {
             boxes += 1;
-            if family.bound >= 0.98 * time || boxes >= most.max(50) || family.squares[0].level >= FINEST_LEVEL
+            if family.bound >= 0.98 * time || boxes >= max.max(50) || family.squares[0].level >= FINEST_LEVEL
             {
                 return (family.bound.min(time), boxes);
             }
@@ -266,8 +266,8 @@ impl Bounding<'_, '_> {
             let d = places[i + 1].center - places[i].center;
             let back = gears >> i & 1 == 1;
             let turn = if back { std::f64::consts::PI } else { 0.0 };
-            let way = if back { -d.norm() } else { d.norm() };
-            (way != 0.0).then(|| (wrap_angle(d.y.atan2(d.x) + turn), way))
+            let distance = if back { -d.norm() } else { d.norm() };
+            (distance != 0.0).then(|| (wrap_angle(d.y.atan2(d.x) + turn), distance))
         };
         (0..=family.turns).map(leg).collect::<Option<Vec<_>>>().map(Legs)
     }

@@ -54,7 +54,7 @@ impl Chain<'_> {
         for i in 0..self.legs {
             let leg = LegRange::between(&self.places[i], &self.places[i + 1]);
             let mut now = Sectors::of(&leg, self.free[i]);
-            let drive = limits.drive_time(leg.least) + pause;
+            let drive = limits.drive_time(leg.min) + pause;
             for sector in now.used_mut() {
                 let arrived = if i == 0 {
                     let (left, right) = (ends.start.left + BACK_OFF, ends.start.right + BACK_OFF);
@@ -87,8 +87,8 @@ impl Chain<'_> {
                 last.sum + if turn > 0.0 { limits.turn_time(turn) } else { -pause }
             })
         };
-        let least = before.used().iter().map(end).fold(f64::INFINITY, f64::min);
-        least.is_finite().then_some(least)
+        let min = before.used().iter().map(end).fold(f64::INFINITY, f64::min);
+        min.is_finite().then_some(min)
     }
 }
 
@@ -111,8 +111,8 @@ impl Sectors {
         let mut sectors = Self::default();
         // If every direction is open, the backward direction adds none.
         let gears = if leg.spread >= PI { [true, false] } else { free };
-        let most = if leg.spread >= PI { MAX_SECTORS } else { MAX_SECTORS / 2 };
-        let parts = ((2.0 * leg.spread / SECTOR_WIDTH_RAD).ceil() as usize).clamp(1, most);
+        let max = if leg.spread >= PI { MAX_SECTORS } else { MAX_SECTORS / 2 };
+        let parts = ((2.0 * leg.spread / SECTOR_WIDTH_RAD).ceil() as usize).clamp(1, max);
         for backward in [false, true].into_iter().filter(|&backward| gears[usize::from(backward)]) {
             let all = leg.headings(backward);
             let spread = all.spread / parts as f64;

@@ -85,8 +85,10 @@ impl<'a> ShrunkHulls<'a> {
         let Some(space) = self.space(depth) else { return true };
         let heading = leg.headings(backward).middle;
         let pose = Pose2::new(from.center.x, from.center.y, heading);
-        let way = if backward { -rest.norm() } else { rest.norm() };
+        let distance = if backward { -rest.norm() } else { rest.norm() };
         // A free drive backs off before a contact, which a bound must not do.
-        space.drive(&pose, way.abs() + 0.01).allows(way - (2.0 * crate::free_motion::BACK_OFF).copysign(way))
+        space
+            .drive(&pose, distance.abs() + 0.01)
+            .allows(distance - (2.0 * crate::free_motion::BACK_OFF).copysign(distance))
     }
 }

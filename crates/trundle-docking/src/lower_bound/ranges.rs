@@ -9,7 +9,7 @@ use trundle_core::wrap_angle;
 #[derive(Debug, Clone, Copy)]
 pub struct LegRange {
     /// Minimum length, m.
-    pub least: f64,
+    pub min: f64,
     /// Centre of the directions, rad.
     pub direction: f64,
     /// Largest deviation of a direction, rad; pi if unknown.
@@ -21,10 +21,10 @@ impl LegRange {
     pub fn between(from: &PositionBox, to: &PositionBox) -> Self {
         let (d, half) = (to.center - from.center, from.half + to.half);
         let beyond = |x: f64| (x.abs() - half).max(0.0);
-        let least = beyond(d.x).hypot(beyond(d.y));
+        let min = beyond(d.x).hypot(beyond(d.y));
         let direction = d.y.atan2(d.x);
-        if least == 0.0 {
-            return Self { least, direction, spread: if half == 0.0 && d.norm() > 0.0 { 0.0 } else { PI } };
+        if min == 0.0 {
+            return Self { min, direction, spread: if half == 0.0 && d.norm() > 0.0 { 0.0 } else { PI } };
         }
         // Seen from the origin, a square that does not contain it spans less than half a turn: its corners are the extremes.
         let unit = d.normalize();
@@ -33,7 +33,7 @@ impl LegRange {
             unit.perp(&corner).abs().atan2(unit.dot(&corner))
         };
         let spread = slope(1.0, 1.0).max(slope(1.0, -1.0)).max(slope(-1.0, 1.0)).max(slope(-1.0, -1.0));
-        Self { least, direction, spread }
+        Self { min, direction, spread }
     }
 
     /// The headings of the robot on this leg: along it, or against it when driven backward.
@@ -109,7 +109,7 @@ mod tests {
         let near = PositionBox { center: Vector2::zeros(), half: 0.1 };
         let far = PositionBox { center: Vector2::new(1.0, 0.0), half: 0.1 };
         let leg = LegRange::between(&near, &far);
-        assert!((leg.least - 0.8).abs() < 1e-12 && (leg.spread - (0.2_f64 / 0.8).atan()).abs() < 1e-12);
+        assert!((leg.min - 0.8).abs() < 1e-12 && (leg.spread - (0.2_f64 / 0.8).atan()).abs() < 1e-12);
         assert_eq!(LegRange::between(&near, &near).spread, PI);
     }
 }

@@ -53,7 +53,7 @@ proptest! {
     fn every_leg_between_two_boxes_is_in_their_range(a in any_box(), b in any_box(), s in any_point(), t in any_point()) {
         let range = LegRange::between(&a, &b);
         let leg = inside(&b, t) - inside(&a, s);
-        prop_assert!(leg.norm() >= range.least - 1e-12);
+        prop_assert!(leg.norm() >= range.min - 1e-12);
         if leg.norm() > 1e-9 {
             let off = wrap_angle(leg.y.atan2(leg.x) - range.direction).abs();
             prop_assert!(off <= range.spread + 1e-9, "{off} beyond {}", range.spread);
@@ -66,9 +66,9 @@ proptest! {
         middle in -3.1..3.1_f64, spread in 0.0..1.5_f64, part in -1.0..1.0_f64, from in -3.1..3.1_f64,
     ) {
         let range = Heading { middle, spread };
-        let least = range.min_turn_from(from, f64::INFINITY, f64::INFINITY).unwrap();
-        prop_assert!(wrap_angle(middle + part * spread - from).abs() >= least - 1e-9);
-        prop_assert!((0.0..=PI + 1e-9).contains(&least));
+        let min = range.min_turn_from(from, f64::INFINITY, f64::INFINITY).unwrap();
+        prop_assert!(wrap_angle(middle + part * spread - from).abs() >= min - 1e-9);
+        prop_assert!((0.0..=PI + 1e-9).contains(&min));
     }
 
     #[test]

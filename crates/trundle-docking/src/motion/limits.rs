@@ -39,9 +39,9 @@ impl MotionLimits {
         Ok(self)
     }
 
-    /// Time of a straight move over the distance `way` (m, either sign) from rest to rest, s.
-    pub fn drive_time(&self, way: f64) -> f64 {
-        rest_to_rest(way.abs(), self.speed, self.acceleration)
+    /// Time of a straight move over the distance `distance` (m, either sign) from rest to rest, s.
+    pub fn drive_time(&self, distance: f64) -> f64 {
+        rest_to_rest(distance.abs(), self.speed, self.acceleration)
     }
 
     /// Time of a turn in place by `angle` (rad, either sign) from rest to rest, s.
@@ -49,9 +49,9 @@ impl MotionLimits {
         rest_to_rest(angle.abs(), self.turn_rate, self.angular_acceleration)
     }
 
-    /// Signed distance and speed `time` seconds after the start of a straight move over `way`, m and m/s.
-    pub fn drive_at(&self, way: f64, time: f64) -> (f64, f64) {
-        at_time(way, time, self.speed, self.acceleration)
+    /// Signed distance and speed `time` seconds after the start of a straight move over `distance`, m and m/s.
+    pub fn drive_at(&self, distance: f64, time: f64) -> (f64, f64) {
+        at_time(distance, time, self.speed, self.acceleration)
     }
 
     /// Signed angle and rate `time` seconds after the start of a turn by `angle`, rad and rad/s.
@@ -60,17 +60,17 @@ impl MotionLimits {
     }
 }
 
-/// Minimum time over the distance `way` with bounded speed and acceleration: a trapezoidal speed profile, triangular for short distances.
-fn rest_to_rest(way: f64, speed: f64, acceleration: f64) -> f64 {
-    if way * acceleration >= speed * speed {
-        way / speed + speed / acceleration
+/// Minimum time over the distance `distance` with bounded speed and acceleration: a trapezoidal speed profile, triangular for short distances.
+fn rest_to_rest(distance: f64, speed: f64, acceleration: f64) -> f64 {
+    if distance * acceleration >= speed * speed {
+        distance / speed + speed / acceleration
     } else {
-        2.0 * (way / acceleration).sqrt()
+        2.0 * (distance / acceleration).sqrt()
     }
 }
 
-fn at_time(way: f64, time: f64, speed: f64, acceleration: f64) -> (f64, f64) {
-    let total = rest_to_rest(way.abs(), speed, acceleration);
+fn at_time(distance: f64, time: f64, speed: f64, acceleration: f64) -> (f64, f64) {
+    let total = rest_to_rest(distance.abs(), speed, acceleration);
     let time = time.clamp(0.0, total);
     let ramp = (speed / acceleration).min(total / 2.0);
     let top = ramp * acceleration;
@@ -80,9 +80,9 @@ fn at_time(way: f64, time: f64, speed: f64, acceleration: f64) -> (f64, f64) {
         (top * (time - ramp / 2.0), top)
     } else {
         let left = total - time;
-        (way.abs() - 0.5 * acceleration * left * left, acceleration * left)
+        (distance.abs() - 0.5 * acceleration * left * left, acceleration * left)
     };
-    (done.copysign(way), rate.copysign(way))
+    (done.copysign(distance), rate.copysign(distance))
 }
 
 #[cfg(test)]
@@ -92,12 +92,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn profiles_end_exactly_and_keep_their_limits(way in -3.0..3.0_f64, part in 0.0..1.0_f64) {
+        fn profiles_end_exactly_and_keep_their_limits(distance in -3.0..3.0_f64, part in 0.0..1.0_f64) {
             let limits = MotionLimits::default();
-            let total = limits.drive_time(way);
-            prop_assert!((limits.drive_at(way, total).0 - way).abs() < 1e-12);
-            let (before, speed) = limits.drive_at(way, total * part);
-            let (after, _) = limits.drive_at(way, total * part + 1e-6);
+            let total = limits.drive_time(distance);
+            prop_assert!((limits.drive_at(distance, total).0 - distance).abs() < 1e-12);
+            let (before, speed) = limits.drive_at(distance, total * part);
+            let (after, _) = limits.drive_at(distance, total * part + 1e-6);
             prop_assert!(speed.abs() <= limits.speed + 1e-12);
             prop_assert!(((after - before) / 1e-6 - speed).abs() < 1e-5);
         }

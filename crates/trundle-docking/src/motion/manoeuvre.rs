@@ -37,7 +37,7 @@ impl Motion {
     pub fn time(&self, limits: &MotionLimits) -> f64 {
         match self {
             Self::Turn(angle) => limits.turn_time(*angle),
-            Self::Drive(way) => limits.drive_time(*way),
+            Self::Drive(distance) => limits.drive_time(*distance),
         }
     }
 
@@ -46,7 +46,7 @@ impl Motion {
         match self {
             Self::Turn(angle) if *angle < 0.0 => "clockwise",
             Self::Turn(_) => "counter-clockwise",
-            Self::Drive(way) if *way < 0.0 => "back",
+            Self::Drive(distance) if *distance < 0.0 => "back",
             Self::Drive(_) => "forward",
         }
     }
@@ -128,8 +128,8 @@ impl Manoeuvre {
                 let (done, rate) = self.limits.turn_at(angle, since);
                 (step.motion.after(step.from, done), Twist2::new(0.0, rate))
             }
-            Motion::Drive(way) => {
-                let (done, speed) = self.limits.drive_at(way, since);
+            Motion::Drive(distance) => {
+                let (done, speed) = self.limits.drive_at(distance, since);
                 (step.motion.after(step.from, done), Twist2::new(speed, 0.0))
             }
         }

@@ -14,19 +14,19 @@ pub struct PositionerConfig {
     /// Fraction of the tolerances within which motions shall end, 0.05 to 1. Default 0.7: the pose measured at rest is then within the
     /// tolerances.
     pub aim: f64,
-    /// Number of tolerances beyond which a robot at its goal moves again, 1 to 100. Default 2.
+    /// Number of tolerances beyond which a robot at its goal moves again, 1 to 100. Default 2 (ours).
     pub release: f64,
-    /// Number of further motions within `release` tolerances of the goal before the pose is accepted, 0 to 100. Default 6.
+    /// Number of further motions within `release` tolerances of the goal before the pose is accepted, 0 to 100. Default 6 (ours).
     pub attempts: u32,
-    /// Smallest speed command, m/s, 0.001 to 0.2. Slower motors stick. Default 0.02.
+    /// Smallest speed command, m/s, 0.001 to 0.2. Slower motors stick. Default 0.02 (ours).
     pub creep_speed: f64,
-    /// Smallest turn rate command, rad/s, 0.001 to 1. Default 0.06.
+    /// Smallest turn rate command, rad/s, 0.001 to 1. Default 0.06 (ours).
     pub creep_rate: f64,
-    /// Delay from command to motion, s, 0 to 1, by which braking begins earlier. Default 0.08.
+    /// Delay from command to motion, s, 0 to 1, by which braking begins earlier. Default 0.08 (ours).
     pub delay: f64,
-    /// Fraction of the acceleration used for braking, 0.1 to 1. Default 0.7.
+    /// Fraction of the acceleration used for braking, 0.1 to 1. Default 0.7 (ours).
     pub braking: f64,
-    /// Turn rate per heading error during a straight move, 1/s, 0 to 10. Default 1.5.
+    /// Turn rate per heading error during a straight move, 1/s, 0 to 10. Default 1.5 (ours).
     pub heading_gain: f64,
     /// Largest overlap with an obstacle that counts as an error of the pose, m, 0 to 0.02. Default 0.005: more than twice a localization
     /// error of 2 mm.
@@ -36,7 +36,7 @@ pub struct PositionerConfig {
     pub sigmas: f64,
     /// Largest margin for an uncertain pose, m, 0 to 0.5. Default 0.05 (ours).
     pub max_margin: f64,
-    /// Time without a manoeuvre before the next plan, s, 0.1 to 100. Default 1.
+    /// Time without a manoeuvre before the next plan, s, 0.1 to 100. Default 1 (ours).
     pub patience: f64,
     /// Work of planning per step, in counted steps of some 10 ns ([`crate::ContactSpace::work`]), 10^4 to 10^11. The robot is at rest until
     /// the plan is complete. Default 2 * 10^6 (ours: 20 ms, a fifth of a step at 10 Hz); in the robot file 60,000.

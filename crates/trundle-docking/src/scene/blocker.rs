@@ -4,7 +4,7 @@ use crate::scene::cells::Cells;
 use std::fmt;
 use trundle_core::{Cell, Vector2};
 
-/// An obstacle that a motion or a pose meets.
+/// An obstacle in contact with a motion or a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blocker {
     /// Kind of the obstacle.
@@ -32,7 +32,7 @@ impl Blocker {
         Self { thing: BlockerKind::Listed(number), at }
     }
 
-    /// The cell whose outline was met.
+    /// The cell whose outline is in contact.
     pub(super) fn among(self, cells: &Cells) -> Self {
         match cells.at(self.at) {
             Some((Cell::Unknown, at)) => Self { thing: BlockerKind::Unknown, at },

@@ -36,17 +36,17 @@ impl<'q> ClearanceQuery<'q> {
 impl PointQuery for ClearanceQuery<'_> {
     fn relevance(&self, patch: &OrientedBox) -> Option<f64> {
         let away = patch.in_frame(self.at, Vector2::x()).distance_from_origin() - self.hull.outer_radius();
-        let known = self.best.map_or(self.reach, |(least, _)| least);
+        let known = self.best.map_or(self.reach, |(min, _)| min);
         if away >= known || known <= 0.0 {
             return None;
         }
-        let least = self.distance(&patch.centre_line()) - patch.half.y;
-        (least < known).then_some(least)
+        let min = self.distance(&patch.centre_line()) - patch.half.y;
+        (min < known).then_some(min)
     }
 
     fn visit(&mut self, p: Vector2, number: u32) {
         let distance = self.distance(&Segment::point(p));
-        if distance < self.best.map_or(self.reach, |(least, _)| least) {
+        if distance < self.best.map_or(self.reach, |(min, _)| min) {
             *self.best = Some((distance, Blocker::listed(number, p)));
         }
     }

@@ -122,8 +122,8 @@ impl ObstacleScene {
     }
 
     /// Runs a query over all points; returns its cost.
-    pub(crate) fn ask(&self, query: &mut impl PointQuery) -> u64 {
-        self.points.ask(query)
+    pub(crate) fn run_query(&self, query: &mut impl PointQuery) -> u64 {
+        self.points.run_query(query)
     }
 
     /// Distance of a footprint at a pose from the nearest obstacle, m, 0 for an overlap, and that obstacle; `None` without an obstacle
@@ -157,7 +157,7 @@ impl ObstacleScene {
             offer(&mut best, reach, distance, || Blocker::listed(number, segment.nearest(pose.position())));
             work += DISTANCE_COST;
         });
-        work += self.points.ask(&mut ClearanceQuery::new(hull, pose, reach, &mut best));
+        work += self.points.run_query(&mut ClearanceQuery::new(hull, pose, reach, &mut best));
         let corner = hull.corners_at(pose).next().expect("invariant: a hull has a corner");
         for (corners, number) in self.solids.iter().filter(|(corners, _)| holds(corners, corner)) {
             offer(&mut best, reach, 0.0, || Blocker::listed(*number, corners[0]));
@@ -196,7 +196,7 @@ impl ObstacleScene {
 
 /// Keeps an obstacle that is nearer than `reach` and the best so far, m.
 fn offer(best: &mut Option<(f64, Blocker)>, reach: f64, distance: f64, blocker: impl Fn() -> Blocker) {
-    if distance < best.map_or(reach, |(least, _)| least) {
+    if distance < best.map_or(reach, |(min, _)| min) {
         *best = Some((distance, blocker()));
     }
 }

@@ -74,11 +74,11 @@ impl PointIndex {
 
     /// Calls `visit` with every point in a box around `center`, and possibly some points nearby.
     pub fn visit(&self, center: Vector2, half: Vector2, visit: impl FnMut(Vector2, u32)) {
-        self.ask(&mut InBox { center, half, visit });
+        self.run_query(&mut InBox { center, half, visit });
     }
 
     /// Runs a query over the points, the most relevant first; returns its cost.
-    pub fn ask<Q: PointQuery>(&self, query: &mut Q) -> u64 {
+    pub fn run_query<Q: PointQuery>(&self, query: &mut Q) -> u64 {
         let mut waiting = [0_u32; MAX_STACK];
         let mut count = usize::from(!self.nodes.is_empty());
         // The bound of the node on top of the stack is known.

@@ -125,15 +125,17 @@ fn spread(
             continue;
         }
         for limit in [ray.ahead, -ray.behind] {
-            for way in LEG_PARTS.map(|part| part * limit).into_iter().filter(|way| way.abs() > 0.004) {
-                let p = node.pose.position() + ray.direction * way;
-                let spent = node.spent + ray.cost + query.drive_cost(way);
+            for distance in
+                LEG_PARTS.map(|part| part * limit).into_iter().filter(|distance| distance.abs() > 0.004)
+            {
+                let p = node.pose.position() + ray.direction * distance;
+                let spent = node.spent + ray.cost + query.drive_cost(distance);
                 if !query.in_region(p) || spent >= search.time_to_beat() {
                     continue;
                 }
                 let pose = Pose2 { x: p.x, y: p.y, theta: ray.heading };
                 let total = spent + estimate(search, &pose) - query.limits.switch_time;
-                children.push(Node { pose, spent, total, parent: index, leg: (ray.heading, way) });
+                children.push(Node { pose, spent, total, parent: index, leg: (ray.heading, distance) });
             }
         }
     }

@@ -69,8 +69,8 @@ impl<'s, 'a> LegSearch<'s, 'a> {
         self.collect_pairs(pose, rays, spent);
         self.tails.sort_unstable_by(|a, b| a.time.total_cmp(&b.time));
         let before = self.time_to_beat();
-        let most = if prefix.is_empty() { MAX_TESTED_TAILS_AT_START } else { MAX_TESTED_TAILS };
-        for i in 0..self.tails.len().min(most) {
+        let max = if prefix.is_empty() { MAX_TESTED_TAILS_AT_START } else { MAX_TESTED_TAILS };
+        for i in 0..self.tails.len().min(max) {
             self.space.yield_point().await;
             let tail = self.tails[i];
             if tail.time >= self.time_to_beat() || self.is_spent() {
@@ -91,13 +91,13 @@ impl<'s, 'a> LegSearch<'s, 'a> {
 
     /// The true time of a tail, if the tail is free. For a pair, only the turn in between is untested.
     fn tested(&mut self, pose: &Pose2, tail: &Tail) -> Option<f64> {
-        let (heading, way) = tail.first;
+        let (heading, distance) = tail.first;
         let Some((next, _)) = tail.second else {
             let query = DockingQuery { start: *pose, ..self.query };
             let (time, _) = Legs(vec![tail.first]).motions(&query, self.space)?;
             return Some(time + tail.spent);
         };
-        let corner = Motion::Drive(way).after(Pose2 { theta: heading, ..*pose }, way);
+        let corner = Motion::Drive(distance).after(Pose2 { theta: heading, ..*pose }, distance);
         let turn = wrap_angle(next - heading);
         let taken = self.space.turn(&corner).turn_by(turn)?;
         Some(tail.time + self.query.turn_cost(taken) - self.query.turn_cost(turn))
@@ -106,13 +106,15 @@ impl<'s, 'a> LegSearch<'s, 'a> {
     /// Straight to the goal, forward or backward.
     fn collect_straight(&mut self, pose: &Pose2, spent: f64) {
         let rest = self.query.goal.position() - pose.position();
-        let way = rest.norm();
-        let toward = if way > 1e-9 { rest.y.atan2(rest.x) } else { pose.theta };
-        for (heading, way) in [(toward, way), (wrap_angle(toward + std::f64::consts::PI), -way)] {
+        let distance = rest.norm();
+        let toward = if distance > 1e-9 { rest.y.atan2(rest.x) } else { pose.theta };
+        for (heading, distance) in
+            [(toward, distance), (wrap_angle(toward + std::f64::consts::PI), -distance)]
+        {
             let turns = self.query.turn_cost(wrap_angle(heading - pose.theta))
                 + self.query.turn_cost(wrap_angle(self.query.goal.theta - heading));
-            let time = spent + turns + self.query.drive_cost(way) - self.query.limits.switch_time;
-            self.tails.push(Tail { spent, time, first: (heading, way), second: None });
+            let time = spent + turns + self.query.drive_cost(distance) - self.query.limits.switch_time;
+            self.tails.push(Tail { spent, time, first: (heading, distance), second: None });
         }
     }
 
@@ -157,7 +159,7 @@ impl<'s, 'a> LegSearch<'s, 'a> {
         let rest = self.query.goal.position() - pose.position();
         let query = &self.query;
         let step = (self.goal_rays.len() / 8).max(1);
-        let mut least = f64::INFINITY;
+        let mut min = f64::INFINITY;
         let lean = 0.35;
         for turn in [0.0, wrap_angle(query.goal.theta - pose.theta), lean, -lean] {
             let heading = pose.theta + turn;
@@ -174,10 +176,10 @@ impl<'s, 'a> LegSearch<'s, 'a> {
                     continue;
                 }
                 let between = query.turn_cost(wrap_angle(goal_ray.heading - heading));
-                let ways = query.drive_cost(first) + query.drive_cost(second);
-                least = least.min(before + between + goal_ray.cost + ways);
+                let distances = query.drive_cost(first) + query.drive_cost(second);
+                min = min.min(before + between + goal_ray.cost + distances);
             }
         }
-        if least.is_finite() { least } else { 20.0 + rest.norm() }
+        if min.is_finite() { min } else { 20.0 + rest.norm() }
     }
 }

@@ -57,12 +57,12 @@ const SHORT_SEARCH_WORK: u64 = 2_000_000;
 
 /// Whether the whole plan has a small cost limit.
 fn has_small_budget(space: &ContactSpace<'_>) -> bool {
-    space.most() < 5 * SHORT_SEARCH_WORK
+    space.max() < 5 * SHORT_SEARCH_WORK
 }
 
 /// Cost limit of a short search; reduced if the limit of the whole plan is less than a few times this limit.
 fn short_search_work(space: &ContactSpace<'_>) -> u64 {
-    SHORT_SEARCH_WORK.min(space.most() / 8)
+    SHORT_SEARCH_WORK.min(space.max() / 8)
 }
 
 /// The best sampled one or two legs, polished.

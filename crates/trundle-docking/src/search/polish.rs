@@ -22,7 +22,7 @@ pub async fn polish(
     if n < 2 {
         return best;
     }
-    let (mut angle, mut way) = (4_f64.to_radians(), 0.08);
+    let (mut angle, mut distance) = (4_f64.to_radians(), 0.08);
     for _ in 0..9 {
         for _ in 0..6 {
             let mut improved = false;
@@ -33,14 +33,15 @@ pub async fn polish(
                 space.yield_point().await;
                 improved |= try_heading(query, space, &mut best, i, angle);
                 if i + 2 < n {
-                    improved |= try_change(query, space, &mut best, |legs, sign| legs.0[i].1 += sign * way);
+                    improved |=
+                        try_change(query, space, &mut best, |legs, sign| legs.0[i].1 += sign * distance);
                 }
             }
             if !improved {
                 break;
             }
         }
-        (angle, way) = (angle / 2.0, way / 2.0);
+        (angle, distance) = (angle / 2.0, distance / 2.0);
     }
     best
 }

@@ -40,12 +40,12 @@ pub async fn rays(
     let mut add = |space: &ContactSpace<'_>, turn: f64| {
         let heading = wrap_angle(pose.theta + turn);
         let turned = Pose2 { theta: heading, ..*pose };
-        let way = space.drive(&turned, reach);
+        let distance = space.drive(&turned, reach);
         let ray = Ray {
             heading,
             direction: turned.direction(),
-            ahead: way.ahead - CONTACT_SLACK,
-            behind: way.behind - CONTACT_SLACK,
+            ahead: distance.ahead - CONTACT_SLACK,
+            behind: distance.behind - CONTACT_SLACK,
             cost: query.turn_cost(turn),
         };
         found.push(ray);

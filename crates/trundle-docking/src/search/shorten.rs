@@ -46,11 +46,11 @@ pub async fn through(
     for i in 0..count - 1 {
         let so_far = best[i].0;
         for j in (i + 1..count.min(i + 1 + span)).rev() {
-            let least = query.drive_cost(poses[i].distance(&poses[j]));
+            let min = query.drive_cost(poses[i].distance(&poses[j]));
             if j > i + 1 && space.work() >= limit {
                 continue;
             }
-            if so_far + least >= best[j].0 {
+            if so_far + min >= best[j].0 {
                 continue;
             }
             if let Some((time, legs)) = connect(query, space, &poses[i], &poses[j]).await {

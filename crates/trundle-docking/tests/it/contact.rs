@@ -78,7 +78,7 @@ pub fn distance(footprint: &Footprint, pose: &Pose2, pieces: &[(Vector2, Vector2
         Footprint::Disc { radius } => (vec![pose.position()], *radius),
         Footprint::Polygon { corners } => (corners.iter().map(|c| pose.transform(*c)).collect(), 0.0),
     };
-    let mut least = f64::INFINITY;
+    let mut min = f64::INFINITY;
     for (i, &p) in outline.iter().enumerate() {
         let q = outline[(i + 1) % outline.len()];
         for &(a, b) in pieces {
@@ -87,7 +87,7 @@ pub fn distance(footprint: &Footprint, pose: &Pose2, pieces: &[(Vector2, Vector2
                 return 0.0;
             }
             let near = [to_piece(a, p, q), to_piece(b, p, q), to_piece(p, a, b), to_piece(q, a, b)];
-            least = near.into_iter().fold(least, f64::min);
+            min = near.into_iter().fold(min, f64::min);
         }
     }
     let holds = |p: Vector2| {
@@ -95,7 +95,7 @@ pub fn distance(footprint: &Footprint, pose: &Pose2, pieces: &[(Vector2, Vector2
             && (0..outline.len())
                 .all(|i| (outline[(i + 1) % outline.len()] - outline[i]).perp(&(p - outline[i])) > 0.0)
     };
-    if pieces.iter().any(|(a, _)| holds(*a)) { 0.0 } else { (least - radius).max(0.0) }
+    if pieces.iter().any(|(a, _)| holds(*a)) { 0.0 } else { (min - radius).max(0.0) }
 }
 
 fn to_piece(p: Vector2, a: Vector2, b: Vector2) -> f64 {
@@ -201,22 +201,22 @@ fn many_points_answer_as_all_of_them() {
             let pose = Pose2::new(at(&mut rng), at(&mut rng), rng.random_range(-PI..PI));
             let clearance =
                 |scene: &ObstacleScene| scene.clearance(&footprint, &pose, 0.3).map_or(0.3, |(d, _)| d);
-            let least = groups.iter().map(clearance).fold(0.3, f64::min);
-            assert_eq!(clearance(&all), least, "{footprint:?} {pose:?}");
-            if least <= margin + 1e-4 {
+            let min = groups.iter().map(clearance).fold(0.3, f64::min);
+            assert_eq!(clearance(&all), min, "{footprint:?} {pose:?}");
+            if min <= margin + 1e-4 {
                 continue;
             }
             let mut space = ContactSpace::new(&footprint, margin, &all);
             let (turn, drive) = (space.turn(&pose), space.drive(&pose, 1.0));
-            let (mut room, mut way) = ((f64::INFINITY, f64::INFINITY), (1.0_f64, 1.0_f64));
+            let (mut room, mut length) = ((f64::INFINITY, f64::INFINITY), (1.0_f64, 1.0_f64));
             for group in &groups {
                 let mut space = ContactSpace::new(&footprint, margin, group);
                 let (turn, drive) = (space.turn(&pose), space.drive(&pose, 1.0));
                 room = (room.0.min(turn.left), room.1.min(turn.right));
-                way = (way.0.min(drive.ahead), way.1.min(drive.behind));
+                length = (length.0.min(drive.ahead), length.1.min(drive.behind));
             }
             assert_eq!((turn.left, turn.right), room, "{footprint:?} {margin} {pose:?}");
-            assert_eq!((drive.ahead, drive.behind), way, "{footprint:?} {margin} {pose:?}");
+            assert_eq!((drive.ahead, drive.behind), length, "{footprint:?} {margin} {pose:?}");
         }
     }
 }

@@ -142,10 +142,10 @@ fn a_file_of_another_kind_is_refused_in_its_first_line() {
 }
 
 fn any_piece() -> impl Strategy<Value = PathPiece> {
-    (-1.0..1.0_f64, -2.0..2.0_f64, 0..3).prop_map(|(way, turn, kind)| match kind {
-        0 => PathPiece { way, turn: 0.0 },
-        1 => PathPiece { way: 0.0, turn },
-        _ => PathPiece { way, turn },
+    (-1.0..1.0_f64, -2.0..2.0_f64, 0..3).prop_map(|(distance, turn, kind)| match kind {
+        0 => PathPiece { distance, turn: 0.0 },
+        1 => PathPiece { distance: 0.0, turn },
+        _ => PathPiece { distance, turn },
     })
 }
 
@@ -153,7 +153,7 @@ proptest! {
     #[test]
     fn half_a_piece_twice_is_the_whole_piece(piece in any_piece(), x in -3.0..3.0_f64, t in -3.0..3.0_f64) {
         let start = Pose2::new(x, -x, t);
-        let half = PathPiece { way: piece.way / 2.0, turn: piece.turn / 2.0 };
+        let half = PathPiece { distance: piece.distance / 2.0, turn: piece.turn / 2.0 };
         let (whole, twice) = (piece.after(&start, 1.0), half.after(&half.after(&start, 1.0), 1.0));
         prop_assert!(whole.distance(&twice) < 1e-9 && wrap_angle(whole.theta - twice.theta).abs() < 1e-9);
         prop_assert!(half.after(&start, 1.0).distance(&piece.after(&start, 0.5)) < 1e-12);
@@ -171,10 +171,10 @@ proptest! {
     }
 
     #[test]
-    fn an_arc_takes_as_long_as_the_longer_of_its_distance_and_its_turn(way in -1.0..1.0_f64, turn in -2.0..2.0_f64) {
+    fn an_arc_takes_as_long_as_the_longer_of_its_distance_and_its_turn(distance in -1.0..1.0_f64, turn in -2.0..2.0_f64) {
         let limits = MotionLimits::default();
-        let (straight, turned) = (PathPiece { way, turn: 0.0 }.time(&limits), PathPiece { way: 0.0, turn }.time(&limits));
-        prop_assert_eq!(PathPiece { way, turn }.time(&limits), straight.max(turned));
+        let (straight, turned) = (PathPiece { distance, turn: 0.0 }.time(&limits), PathPiece { distance: 0.0, turn }.time(&limits));
+        prop_assert_eq!(PathPiece { distance, turn }.time(&limits), straight.max(turned));
     }
 
     #[test]
@@ -191,7 +191,7 @@ proptest! {
 #[test]
 fn a_path_that_rolls_on_in_one_direction_has_no_pause_and_one_that_turns_back_has() {
     let limits = MotionLimits::default();
-    let piece = |way: f64| PathPiece { way, turn: 0.3 };
+    let piece = |distance: f64| PathPiece { distance, turn: 0.3 };
     let (on, back) =
         (time_of(&[piece(0.5), piece(0.5)], &limits), time_of(&[piece(0.5), piece(-0.5)], &limits));
     assert!((back - on - limits.switch_time).abs() < 1e-12);

@@ -40,10 +40,10 @@ fn bad_input_is_refused_with_a_reason() {
     for method in [Method::Optimal, Method::Hong24] {
         let planner = DockingPlanner::new(DockingConfig { method, ..DockingConfig::default() }).unwrap();
         for (start, goal, expected) in cases {
-            let said = planner.plan(&robot(), &wall, start, goal).unwrap_err().to_string();
-            assert!(said.contains(expected), "{said}");
+            let message = planner.plan(&robot(), &wall, start, goal).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
             let started = planner.begin(0.01, &robot(), &wall, start, goal).unwrap_err().to_string();
-            assert_eq!(said, started);
+            assert_eq!(message, started);
         }
     }
     let shape = |corners: &[(f64, f64)]| {
@@ -53,8 +53,8 @@ fn bad_input_is_refused_with_a_reason() {
     assert!(shape(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]).contains("area is 0 m^2"));
     assert!(Footprint::disc(0.0).is_err() && Footprint::disc(f64::NAN).is_err());
     let list = [Obstacle::Point(at(0.0, 0.0)), Obstacle::Segment(at(0.0, 1.0), at(f64::NAN, 0.0))];
-    let said = ObstacleScene::new(&list).unwrap_err().to_string();
-    assert!(said.contains("obstacle 1") && said.contains("finite"), "{said}");
+    let message = ObstacleScene::new(&list).unwrap_err().to_string();
+    assert!(message.contains("obstacle 1") && message.contains("finite"), "{message}");
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn no_turn_leads_through_the_walls_of_a_map() {
 }
 
 #[test]
-fn the_default_method_solves_the_papers_scenarios_and_knows_how_well() {
+fn the_default_method_solves_the_papers_scenarios_with_a_bound() {
     for scenario in Scenario::ALL {
         let Problem { footprint, start, goal, .. } = scenario.problem();
         let plan = planner().plan(&footprint, &scenario.problem().scene().unwrap(), start, goal).unwrap();
@@ -159,9 +159,9 @@ fn manoeuvres_are_free_and_end_exactly() {
                     let free = space.turn(&step.from);
                     if angle > 0.0 { angle <= free.left + 1e-6 } else { -angle <= free.right + 1e-6 }
                 }
-                Motion::Drive(way) => {
-                    let free = space.drive(&step.from, way.abs() + 0.1);
-                    way <= free.ahead + 1e-6 && -way <= free.behind + 1e-6
+                Motion::Drive(length) => {
+                    let free = space.drive(&step.from, length.abs() + 0.1);
+                    length <= free.ahead + 1e-6 && -length <= free.behind + 1e-6
                 }
             };
             assert!(free, "problem {i}: {step:?}");
@@ -196,12 +196,12 @@ fn on_a_map_the_blocking_cell_is_named() {
     let grid = OccupancyGrid::from_ascii(0.1, &(wall.clone() + &row.repeat(16) + &wall)).unwrap();
     let scene = ObstacleScene::from_grid(&grid, at(1.5, 0.9), 5.0, true);
     let (free, disc) = (Pose2::new(0.8, 0.9, 0.0), Footprint::disc(0.2).unwrap());
-    let said = |goal: Pose2| planner().plan(&disc, &scene, free, goal).unwrap_err().to_string();
+    let message = |goal: Pose2| planner().plan(&disc, &scene, free, goal).unwrap_err().to_string();
     let goal = |x: f64, y: f64| Pose2::new(x, y, 0.0);
-    assert_eq!(said(goal(1.38, 0.93)), "the goal overlaps the occupied cell at (1.550, 0.950) m");
-    assert_eq!(said(goal(1.55, 0.93)), "the goal overlaps the occupied cell at (1.550, 0.950) m");
-    assert_eq!(said(goal(2.75, 0.85)), "the goal overlaps the unknown cell at (2.650, 0.850) m");
-    assert!(said(goal(-0.05, 0.93)).contains("the goal overlaps the end of the map at ("));
+    assert_eq!(message(goal(1.38, 0.93)), "the goal overlaps the occupied cell at (1.550, 0.950) m");
+    assert_eq!(message(goal(1.55, 0.93)), "the goal overlaps the occupied cell at (1.550, 0.950) m");
+    assert_eq!(message(goal(2.75, 0.85)), "the goal overlaps the unknown cell at (2.650, 0.850) m");
+    assert!(message(goal(-0.05, 0.93)).contains("the goal overlaps the end of the map at ("));
     let DockingPlan::Impossible(none) = planner().plan(&disc, &scene, free, goal(2.1, 0.9)).unwrap() else {
         panic!("through a wall")
     };
@@ -237,11 +237,11 @@ fn a_hundred_thousand_points_are_planned() {
     for step in solution.manoeuvre.steps() {
         let free = match step.motion {
             Motion::Turn(angle) => space.turn(&step.from).turn_by(angle) == Some(angle),
-            Motion::Drive(way) => space.drive(&step.from, way.abs() + 0.01).allows(way),
+            Motion::Drive(length) => space.drive(&step.from, length.abs() + 0.01).allows(length),
         };
         assert!(free, "{step:?}");
     }
-    let least = (0..6).map(|_| timed(plan).1).fold(ms, f64::min);
-    eprintln!("100,000 points: {least:.0} ms of one core");
-    assert!(least < 100.0 * slowness(), "{least:.0} ms");
+    let min = (0..6).map(|_| timed(plan).1).fold(ms, f64::min);
+    eprintln!("100,000 points: {min:.0} ms of one core");
+    assert!(min < 100.0 * slowness(), "{min:.0} ms");
 }

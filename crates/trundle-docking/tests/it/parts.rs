@@ -20,7 +20,7 @@ fn a_plan_in_parts_is_the_plan_at_once() {
     let mut rng = ChaCha8Rng::seed_from_u64(12);
     let mut problems: Vec<_> = (0..25).map(|i| generate(format!("{i}"), &mut rng)).collect();
     problems.extend(parse(include_str!("../data/hard.txt")).unwrap().into_iter().take(1));
-    let (mut most, mut parts) = (0, 0);
+    let (mut max, mut parts) = (0, 0);
     for problem in &problems {
         let scene = problem.scene().unwrap();
         let run_to_end = planner.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
@@ -29,15 +29,15 @@ fn a_plan_in_parts_is_the_plan_at_once() {
         let in_parts = loop {
             let before = planning.work();
             let plan = planning.advance(100_000);
-            (most, parts) = (most.max(planning.work() - before), parts + 1);
+            (max, parts) = (max.max(planning.work() - before), parts + 1);
             if let Some(plan) = plan {
                 break plan;
             }
         };
         assert_eq!(run_to_end, in_parts, "problem {}", problem.name);
     }
-    eprintln!("{parts} parts of 100000, the largest {most}");
-    assert!(parts > 3 * problems.len() && most <= 100_000 + BEYOND, "{parts} parts, the largest {most}");
+    eprintln!("{parts} parts of 100000, the largest {max}");
+    assert!(parts > 3 * problems.len() && max <= 100_000 + BEYOND, "{parts} parts, the largest {max}");
 }
 
 /// Number of runs of one problem, of which the fastest counts.
@@ -61,8 +61,8 @@ fn a_hundred_thousand_points_of_any_kind_stay_under_a_tenth_of_a_second() {
         while runs.len() < MAX_TIMED_RUNS && runs.iter().all(|(_, ms)| *ms >= MAX_PLAN_MS) {
             runs.push(timed(plan));
         }
-        let least = runs.iter().map(|(_, ms)| *ms).fold(f64::INFINITY, f64::min);
-        assert!(least < MAX_PLAN_MS * slowness(), "{}: {least:.0} ms", problem.name);
+        let min = runs.iter().map(|(_, ms)| *ms).fold(f64::INFINITY, f64::min);
+        assert!(min < MAX_PLAN_MS * slowness(), "{}: {min:.0} ms", problem.name);
         let (margin, ends) = (planner.config().margin, (problem.start, problem.goal));
         let mut job = planner.begin(margin, &problem.footprint, &scene, ends.0, ends.1).unwrap();
         job.advance(u64::MAX);
@@ -75,7 +75,7 @@ fn a_hundred_thousand_points_of_any_kind_stay_under_a_tenth_of_a_second() {
                 assert!(none.within >= planner.config().reach && none.by.is_some(), "{}", problem.name);
             }
         }
-        worst = worst.max(least);
+        worst = worst.max(min);
     }
     eprintln!("{found} of 21 found, the longest {worst:.0} ms");
     assert_eq!(found, 17);
@@ -111,15 +111,15 @@ fn the_papers_method_rests_too() {
     let (start, goal) = (Pose2::IDENTITY, Pose2::new(0.1, 0.3, 0.2));
     let run_to_end = planner.plan(&Footprint::KOBUKI, &scene, start, goal).unwrap();
     let mut planning = planner.begin(0.01, &Footprint::KOBUKI, &scene, start, goal).unwrap();
-    let (mut parts, mut most) = (0, 0);
+    let (mut parts, mut max) = (0, 0);
     let in_parts = loop {
         let before = planning.work();
         let plan = planning.advance(10_000);
-        (parts, most) = (parts + 1, most.max(planning.work() - before));
+        (parts, max) = (parts + 1, max.max(planning.work() - before));
         if let Some(plan) = plan {
             break plan;
         }
     };
     assert_eq!(run_to_end, in_parts);
-    assert!(parts > 5 && most <= 11_000, "{parts} parts, the largest {most}");
+    assert!(parts > 5 && max <= 11_000, "{parts} parts, the largest {max}");
 }

@@ -234,7 +234,7 @@ fn a_goal_too_far_away_is_refused_with_both_distances() {
     let free = scene(&[]);
     let mut standing = Standing::new(robot(), Pose2::new(3.6, 4.8, 0.0), &free);
     let report = standing.stand(Pose2::IDENTITY, 1.0);
-    assert_eq!(report.reason, PositionerReason::Refused(DockingRefusal::TooFar { distance: 6.0, most: 5.0 }));
+    assert_eq!(report.reason, PositionerReason::Refused(DockingRefusal::TooFar { distance: 6.0, max: 5.0 }));
 }
 
 #[test]

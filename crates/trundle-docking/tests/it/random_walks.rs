@@ -182,8 +182,8 @@ fn every_pose_of_a_solution_keeps_the_margin_that_it_states() {
         let scene = problem.scene().unwrap();
         let plan = planner.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
         let DockingPlan::Found(solution) = plan else { continue };
-        let least = min_of(&problem.footprint, &solution.manoeuvre, &sides(&problem.obstacles));
-        assert!(least >= solution.margin - 1e-6, "problem {i}: {least} m instead of {}", solution.margin);
+        let min = min_of(&problem.footprint, &solution.manoeuvre, &sides(&problem.obstacles));
+        assert!(min >= solution.margin - 1e-6, "problem {i}: {min} m instead of {}", solution.margin);
         assert!(solution.margin <= planner.config().margin);
         kept_all += usize::from(solution.margin == planner.config().margin);
     }
@@ -216,10 +216,10 @@ fn no_time_is_below_what_the_distance_and_the_turn_alone_take() {
     let limits = MotionLimits::default();
     for (_, _, solution) in solutions(87) {
         let (start, goal) = (solution.manoeuvre.start(), solution.manoeuvre.end());
-        let least = limits
+        let min = limits
             .drive_time(start.distance(&goal))
             .max(limits.turn_time(wrap_angle(goal.theta - start.theta)));
-        assert!(solution.manoeuvre.duration() >= least - 1e-9);
+        assert!(solution.manoeuvre.duration() >= min - 1e-9);
     }
 }
 

@@ -25,16 +25,16 @@ pub fn ends(rng: &mut ChaCha8Rng, free: impl Fn(&Pose2) -> bool) -> Option<(Pose
 /// The minimum distance along the path; no point of the robot moves more than 2 mm between two samples.
 fn min_along_path(footprint: &Footprint, manoeuvre: &Manoeuvre, pieces: &[(Vector2, Vector2)]) -> f64 {
     let arm = footprint.circumscribed_radius().max(1.0);
-    let mut least = f64::INFINITY;
+    let mut min = f64::INFINITY;
     for step in manoeuvre.steps() {
         let amount = step.motion.amount();
         let samples = (amount.abs() * arm / 0.002).ceil().max(1.0) as u32;
         for i in 0..=samples {
             let pose = step.motion.after(step.from, amount * f64::from(i) / f64::from(samples));
-            least = least.min(distance(footprint, &pose, pieces));
+            min = min.min(distance(footprint, &pose, pieces));
         }
     }
-    least
+    min
 }
 
 /// Discs, triangles and heptagons with any axle, also outside. Every manoeuvre is free and ends exactly, and no query that the greedy
@@ -47,7 +47,7 @@ fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
         [0.0, 0.01].map(|margin| DockingPlanner::new(DockingConfig { margin, ..config.clone() }).unwrap());
     let by_paper = DockingConfig { method: Method::Hong24, margin: 0.0, ..config };
     let greedy = DockingPlanner::new(by_paper).unwrap();
-    let (mut count, mut found, mut never, mut least) = (0, 0, 0, f64::INFINITY);
+    let (mut count, mut found, mut never, mut min) = (0, 0, 0, f64::INFINITY);
     while count < PROBLEMS {
         let footprint = footprint(&mut rng);
         let obstacles: Vec<Obstacle> = (0..rng.random_range(4..16)).map(|_| obstacle(&mut rng)).collect();
@@ -64,7 +64,7 @@ fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
                 let kept = solution.margin - CONTACT_M;
                 assert!(on_the_way >= kept, "problem {count}: {on_the_way} of {kept}");
                 assert!(solution.bound <= manoeuvre.duration() + 1e-9);
-                least = least.min(on_the_way);
+                min = min.min(on_the_way);
             }
             DockingPlan::Impossible(none) => {
                 let DockingPlan::Found(other) = greedy.plan(&footprint, &scene, start, goal).unwrap() else {
@@ -81,9 +81,6 @@ fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
             }
         }
     }
-    eprintln!(
-        "{found} of {count} found, {never} proven impossible; {:.2} mm the least on any way",
-        1e3 * least
-    );
+    eprintln!("{found} of {count} found, {never} proven impossible; smallest clearance {:.2} mm", 1e3 * min);
     assert!(found > PROBLEMS / 2, "{found} of {count}");
 }

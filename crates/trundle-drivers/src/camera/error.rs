@@ -81,7 +81,7 @@ pub enum CameraError {
         remedy: String,
     },
     /// The camera was unplugged.
-    #[error("the camera {device} is gone: check its cable and its power supply")]
+    #[error("the camera {device} is disconnected: check its cable and its power supply")]
     Unplugged {
         /// The camera.
         device: String,

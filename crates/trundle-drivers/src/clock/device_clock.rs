@@ -83,7 +83,7 @@ struct LateRun {
 }
 
 impl DeviceClock {
-    /// A clock that has seen no packet.
+    /// A clock before its first packet.
     pub fn new(config: DeviceClockConfig) -> Self {
         Self {
             config,

@@ -133,7 +133,7 @@ impl KobukiBase {
         locked(&self.status).is_up
     }
 
-    /// The last packet, with what no event carries: currents, cliff signals, inputs.
+    /// The last packet: it also holds the values without an event: currents, cliff signals, inputs.
     pub fn latest(&self) -> Option<Feedback> {
         locked(&self.status).latest.clone()
     }

@@ -1,4 +1,4 @@
-//! A link of bytes to a device, and what opens it.
+//! A byte link to a device, and its opener.
 
 use std::io;
 use std::path::PathBuf;

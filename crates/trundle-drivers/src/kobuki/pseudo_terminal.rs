@@ -87,7 +87,7 @@ impl Drop for PseudoTerminal {
         if let Some(link) = self.link.as_ref().filter(|link| is_ours(link))
             && let Err(error) = std::fs::remove_file(link)
         {
-            tracing::debug!("the link {} stays: {error}", link.display());
+            tracing::debug!("cannot remove the link {}: {error}", link.display());
         }
     }
 }

@@ -129,7 +129,7 @@ impl ByteLink for SerialPort {
     }
 }
 
-/// Waits until `fd` can be read, at most `wait`; what happened.
+/// Waits until `fd` can be read, at most `wait`; returns the event.
 pub(super) fn wait_readable(fd: &OwnedFd, wait: Duration) -> io::Result<PollFlags> {
     let mut fds = [PollFd::new(fd, PollFlags::IN)];
     let timeout = Timespec { tv_sec: wait.as_secs() as i64, tv_nsec: i64::from(wait.subsec_nanos()) };

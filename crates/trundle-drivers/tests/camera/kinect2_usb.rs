@@ -60,7 +60,7 @@ fn packets_become_whole_frames_with_their_times() {
 }
 
 #[test]
-fn a_lost_or_cut_packet_costs_one_frame_and_no_more() {
+fn a_lost_or_cut_packet_costs_one_frame_only() {
     for fault in 0..3 {
         let mut depth = DepthPackets::default();
         let mut broken = frame(1);

@@ -51,7 +51,7 @@ fn a_file_gives_the_frames_written_and_ends() {
 
 #[test]
 #[cfg(unix)]
-fn a_process_that_crashes_is_a_lost_camera_and_no_more() {
+fn a_process_that_crashes_is_reported_as_a_lost_camera() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("frames.trfr");
     std::fs::write(&path, stream(&info(), &frames(2))).unwrap();
@@ -154,7 +154,7 @@ fn a_pipe_gives_frames_as_they_come_and_times_out_between() {
     assert_eq!(camera.next_frame(LONG).unwrap(), Some(frame(1000, 1)));
     drop(writer);
     let error = camera.next_frame(LONG).unwrap_err().to_string();
-    assert_eq!(error, "the camera a pipe is gone: check its cable and its power supply");
+    assert_eq!(error, "the camera a pipe is disconnected: check its cable and its power supply");
 }
 
 #[test]

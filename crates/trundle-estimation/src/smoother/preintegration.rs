@@ -173,7 +173,7 @@ impl WheelTurn {
         self.by_parameters += by;
         let distance = (part.left + part.right).abs() / 2.0;
         self.variance +=
-            config.wheel_turn_noise.powi(2) * turn.abs() + config.wheel_way_noise.powi(2) * distance;
+            config.wheel_turn_noise.powi(2) * turn.abs() + config.wheel_distance_noise.powi(2) * distance;
         self.slip += 2.0 * part.slip / wheelbase;
         self.is_second &= part.turn_by_gyro.is_some() && part.unobserved == Matrix3::zeros();
     }

@@ -112,7 +112,7 @@ impl Drive {
         let c = &mut self.calibration;
         let mut sample = |variance: f64| variance.sqrt() * normal(&mut self.rng);
         let spot = odometry.spot_noise.powi(2) * turn.abs();
-        let along = sample(odometry.way_noise.powi(2) * distance.abs() + spot);
+        let along = sample(odometry.distance_noise.powi(2) * distance.abs() + spot);
         let across = sample(odometry.sideways_noise.powi(2) * distance.abs() + spot);
         let by_gyro = odometry.gyro_turn_noise.powi(2) * turn.abs()
             + if rests {
@@ -125,7 +125,7 @@ impl Drive {
         let by_wheels = turn
             + sample(
                 odometry.wheel_turn_noise.powi(2) * turn.abs()
-                    + odometry.wheel_way_noise.powi(2) * distance.abs(),
+                    + odometry.wheel_distance_noise.powi(2) * distance.abs(),
             );
         let half = DifferentialDrive::KOBUKI.wheelbase * c.wheelbase * by_wheels / 2.0;
         self.truth = self.truth

@@ -89,8 +89,8 @@ fn localize_drive(
     let mut localizer = MapLocalizer::from_grid(grid, ParticleConfig { map, ..default }, seed)?;
     let mut result = DriveResult::default();
     for scan in &drive.scans {
-        let said = localizer.update(scan.odom_from_base, &scan.scan);
-        let Localized::Known { map_from_base, .. } = said else { continue };
+        let reported = localizer.update(scan.odom_from_base, &scan.scan);
+        let Localized::Known { map_from_base, .. } = reported else { continue };
         let wrong = is_wrong(map_from_base, scan.world_from_base);
         if result.first_s.is_none() {
             result.first_s = Some(scan.scan.stamp().as_secs());

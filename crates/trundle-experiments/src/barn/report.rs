@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn the_verdict_says_what_within_says() {
+    fn the_verdict_agrees_with_the_limits() {
         for (good, bad) in [(10, 0), (5, 5), (0, 1)] {
             let means = BarnMeans::of(&trials(good, bad));
             let head = if means.within() { "Within the limits" } else { "Missed" };

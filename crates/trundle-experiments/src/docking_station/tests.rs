@@ -79,7 +79,7 @@ fn the_same_seed_gives_the_same_dock() {
 }
 
 #[test]
-fn a_robot_that_starts_on_its_station_backs_off_first_and_knows_the_way_back() {
+fn a_robot_that_starts_on_its_station_backs_off_first_and_finds_back() {
     let start = station() * Pose2::new(0.18, 0.0, PI);
     let scene = room(start).with_station(station()).unwrap();
     let tasks = vec![Task::go(Pose2::new(-1.5, 0.5, 0.0)), Task::Dock];
@@ -95,7 +95,7 @@ fn a_robot_that_starts_on_its_station_backs_off_first_and_knows_the_way_back() {
 }
 
 #[test]
-fn without_a_station_it_says_that_there_was_no_light() {
+fn without_a_station_the_reason_is_missing_light() {
     let trial = dock(plan(room(Pose2::IDENTITY), 1)).unwrap();
     assert_eq!(kinds(&trial), [ReasonKind::TasksFailed, ReasonKind::NoStationLight]);
     assert_eq!(trial.contacts, 0);

@@ -140,22 +140,22 @@ fn floor() -> Solid {
 /// The people of a scenario. The benchmark gives each way-point a time. Here each person walks the same closed path at the mean speed of
 /// its legs, with the mean duration of stops.
 fn people(file: &Path, scenario: &str) -> Result<Vec<Person>, AppError> {
-    let mut ways: Vec<(String, Vec<[f64; 3]>)> = Vec::new();
+    let mut trajectories: Vec<(String, Vec<[f64; 3]>)> = Vec::new();
     for row in rows(file, 5, &MRPB)?.iter().filter(|row| row.text(0) == scenario) {
         let point = [row.number(2)?, row.number(3)?, row.number(4)?];
-        match ways.last_mut().filter(|(name, _)| name == row.text(1)) {
-            Some((_, way)) => way.push(point),
-            None => ways.push((row.text(1).to_owned(), vec![point])),
+        match trajectories.last_mut().filter(|(name, _)| name == row.text(1)) {
+            Some((_, trajectory)) => trajectory.push(point),
+            None => trajectories.push((row.text(1).to_owned(), vec![point])),
         }
     }
-    Ok(ways.iter().map(|(_, way)| person(way)).collect())
+    Ok(trajectories.iter().map(|(_, trajectory)| person(trajectory)).collect())
 }
 
 /// A person with its way-points (s, m, m).
-fn person(way: &[[f64; 3]]) -> Person {
+fn person(trajectory: &[[f64; 3]]) -> Person {
     let (mut length, mut walking, mut standing, mut stops) = (0.0, 0.0, 0.0, 0_u32);
-    let mut waypoints = vec![[way[0][1], way[0][2]]];
-    for leg in way.windows(2) {
+    let mut waypoints = vec![[trajectory[0][1], trajectory[0][2]]];
+    for leg in trajectory.windows(2) {
         let (time, step) = (leg[1][0] - leg[0][0], (leg[1][1] - leg[0][1]).hypot(leg[1][2] - leg[0][2]));
         if step > 0.0 {
             (length, walking) = (length + step, walking + time);
@@ -178,8 +178,9 @@ mod tests {
 
     #[test]
     fn an_actor_becomes_a_person_who_walks_around() {
-        let way = [[0.0, 1.0, 5.0], [20.0, 1.0, 0.0], [25.0, 1.0, 0.0], [45.0, 1.0, 5.0], [50.0, 1.0, 5.0]];
-        let person = person(&way);
+        let trajectory =
+            [[0.0, 1.0, 5.0], [20.0, 1.0, 0.0], [25.0, 1.0, 0.0], [45.0, 1.0, 5.0], [50.0, 1.0, 5.0]];
+        let person = person(&trajectory);
         assert_eq!(person.waypoints, [[1.0, 5.0], [1.0, 0.0]]);
         assert_eq!((person.speed, person.pause, person.around), (0.25, 5.0, true));
     }

@@ -118,21 +118,21 @@ fn show(progress: &dyn StepProgress, robot: &Simulator, now: f64, started: Insta
 
 #[cfg(test)]
 mod tests {
-    use super::super::driver::Standing;
+    use super::super::driver::StillDriver;
     use super::*;
     use trundle_sim::{Scene, SimConfig};
 
     #[test]
     fn a_drive_ends_at_the_sooner_of_duration_and_driver() {
-        assert_eq!(end_s(Some(1.0), &Standing::new(Some(3.0))), Some(1.0));
-        assert_eq!(end_s(None, &Standing::new(Some(3.0))), Some(3.0));
+        assert_eq!(end_s(Some(1.0), &StillDriver::new(Some(3.0))), Some(1.0));
+        assert_eq!(end_s(None, &StillDriver::new(Some(3.0))), Some(3.0));
     }
 
     #[test]
     fn a_standing_robot_takes_images_and_touches_nothing() {
         let scene = Scene::by_name("room", 1).unwrap();
         let mut robot = Simulator::new(scene, SimConfig::default(), 1).unwrap();
-        let drive = drive_simulator(&mut robot, &mut Standing::new(Some(0.3)), None, None, &()).unwrap();
+        let drive = drive_simulator(&mut robot, &mut StillDriver::new(Some(0.3)), None, None, &()).unwrap();
         assert!(drive.images > 0 && drive.is_complete && drive.contacts == 0, "{drive:?}");
         assert!(drive.time < 0.3 && drive.distance < 1e-6, "{drive:?}");
     }

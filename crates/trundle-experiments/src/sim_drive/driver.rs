@@ -36,11 +36,11 @@ pub trait SimDriver {
 
 /// A driver that does not move.
 #[derive(Debug, Clone, Copy)]
-pub struct Standing {
+pub struct StillDriver {
     end_s: f64,
 }
 
-impl Standing {
+impl StillDriver {
     /// Rests for this time, s; `None` for 5 s.
     #[must_use]
     pub fn new(seconds: Option<f64>) -> Self {
@@ -48,7 +48,7 @@ impl Standing {
     }
 }
 
-impl SimDriver for Standing {
+impl SimDriver for StillDriver {
     fn twist(&mut self, _stamp: Stamp, _pose: Pose2) -> Result<Twist2, AppError> {
         Ok(Twist2::ZERO)
     }
@@ -139,8 +139,8 @@ mod tests {
 
     #[test]
     fn a_standing_robot_is_simulated_for_the_time_asked_for() {
-        assert_eq!(Standing::new(None).end_s(), Some(STANDING_S));
-        let mut standing = Standing::new(Some(2.0));
+        assert_eq!(StillDriver::new(None).end_s(), Some(STANDING_S));
+        let mut standing = StillDriver::new(Some(2.0));
         assert_eq!(standing.end_s(), Some(2.0));
         assert_eq!(standing.twist(Stamp::default(), Pose2::IDENTITY).unwrap(), Twist2::ZERO);
     }

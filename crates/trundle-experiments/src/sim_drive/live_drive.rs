@@ -59,7 +59,7 @@ impl SimDriver for LiveDrive<'_> {
     fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Result<Twist2, AppError> {
         self.pacer.wait_for(stamp.as_secs());
         while let Some(request) = self.link.next_request() {
-            self.teleop.obey(&request.command, stamp);
+            self.teleop.execute(&request.command, stamp);
         }
         let twist = match &mut self.driver {
             Some(driver) => driver.twist(stamp, pose)?,
@@ -93,7 +93,7 @@ impl SimDriver for LiveDrive<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::drive::drive_simulator;
-    use super::super::driver::Standing;
+    use super::super::driver::StillDriver;
     use super::*;
     use trundle_app::operator::operator_link;
     use trundle_runtime::OperatorCommand;
@@ -107,7 +107,7 @@ mod tests {
         let map = OccupancyGrid::from_ascii(0.5, "##").unwrap();
         let mut live = LiveDrive::start(driver, link, map);
         let drive = drive_simulator(&mut robot, &mut live, Some(1.0), None, &()).unwrap();
-        (drive.distance, operator.glance().unwrap())
+        (drive.distance, operator.peek().unwrap())
     }
 
     #[test]
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_driver_is_shown_and_not_disturbed() {
-        let (distance, view) = drive(Some(Box::new(Standing::new(Some(0.5)))));
+        let (distance, view) = drive(Some(Box::new(StillDriver::new(Some(0.5)))));
         assert!(distance < 1e-3 && view.stamp.as_secs() < 0.5, "{distance} m, {:?}", view.stamp);
     }
 }

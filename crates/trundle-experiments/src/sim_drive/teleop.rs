@@ -11,7 +11,7 @@ pub struct Teleop {
 
 impl Teleop {
     /// Obeys a command at `now`: a twist drives, all others stop.
-    pub fn obey(&mut self, command: &OperatorCommand, now: Stamp) {
+    pub fn execute(&mut self, command: &OperatorCommand, now: Stamp) {
         self.wanted = match command {
             OperatorCommand::Drive(twist) => Some((*twist, now)),
             _ => None,
@@ -35,10 +35,10 @@ mod tests {
         let (mut teleop, twist) = (Teleop::default(), Twist2::new(0.2, 0.1));
         let at = |seconds: f64| Stamp::default().after(seconds);
         assert_eq!(teleop.twist(at(0.0)), Twist2::ZERO);
-        teleop.obey(&OperatorCommand::Drive(twist), at(1.0));
+        teleop.execute(&OperatorCommand::Drive(twist), at(1.0));
         assert_eq!((teleop.twist(at(1.29)), teleop.twist(at(1.31))), (twist, Twist2::ZERO));
-        teleop.obey(&OperatorCommand::Drive(twist), at(2.0));
-        teleop.obey(&OperatorCommand::Pause, at(2.0));
+        teleop.execute(&OperatorCommand::Drive(twist), at(2.0));
+        teleop.execute(&OperatorCommand::Pause, at(2.0));
         assert_eq!(teleop.twist(at(2.0)), Twist2::ZERO);
     }
 }

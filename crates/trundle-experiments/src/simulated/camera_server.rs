@@ -13,7 +13,7 @@ use trundle_app::AppError;
 use trundle_core::RgbdImage;
 use trundle_drivers::camera::pipe::StreamWriter;
 use trundle_drivers::camera::{CameraError, CameraFrame, CameraInfo, PixelFormat, RawImage, StreamInfo};
-use trundle_sim::{CameraAside, Shot, SimConfig};
+use trundle_sim::{DetachedCamera, Shot, SimConfig};
 
 /// Length of a unit of depth \[m\]: a millimetre, as in depth cameras. Source: ours.
 const DEPTH_UNIT_M: f64 = 0.001;
@@ -67,7 +67,7 @@ impl CameraServer {
     ///
     /// # Errors
     /// When the system refuses a thread.
-    pub fn with_camera(mut self, camera: CameraAside) -> Result<Self, AppError> {
+    pub fn with_camera(mut self, camera: DetachedCamera) -> Result<Self, AppError> {
         let (shots, to_take) = sync_channel(1);
         let (path, info, shared) = (self.path.clone(), self.info.clone(), Arc::clone(&self.shared));
         let thread = std::thread::Builder::new()
@@ -113,7 +113,13 @@ fn make_fifo(path: &Path) -> Result<(), AppError> {
 }
 
 /// Takes images and writes them, to one reader after the other.
-fn serve(mut camera: CameraAside, shots: &Receiver<Shot>, path: &Path, info: &CameraInfo, shared: &Shared) {
+fn serve(
+    mut camera: DetachedCamera,
+    shots: &Receiver<Shot>,
+    path: &Path,
+    info: &CameraInfo,
+    shared: &Shared,
+) {
     let mut writer = None;
     for shot in shots {
         let image = match camera.take(&shot) {
@@ -128,7 +134,7 @@ fn serve(mut camera: CameraAside, shots: &Receiver<Shot>, path: &Path, info: &Ca
         }
         let is_sent = writer.as_mut().is_some_and(|writer| writer.write(&frame(&image)).is_ok());
         if !is_sent {
-            writer = None; // the reader has gone
+            writer = None; // the reader is closed
         }
         let counter = if is_sent { &shared.images } else { &shared.not_taken };
         counter.fetch_add(1, Ordering::Relaxed);

@@ -11,7 +11,7 @@ use trundle_core::{RobotBody, SensorEvent, Twist2};
 use trundle_io::EncodedEvent;
 use trundle_runtime::Histogram;
 use trundle_runtime::real_time::{InboxItem, InboxSender, ThreadPlacement};
-use trundle_sim::{CameraAside, Shot, Simulator};
+use trundle_sim::{DetachedCamera, Shot, Simulator};
 
 /// The simulator in real time in parallel with the robot: a thread for the base, one for the camera.
 pub struct SimulatedRealTimeBody {
@@ -132,7 +132,7 @@ fn live(
     Ok(BodyTiming {
         lateness: Some(Lateness {
             p999_ms: lateness.quantile(0.999).unwrap_or_default(),
-            max_ms: lateness.most().unwrap_or_default(),
+            max_ms: lateness.max().unwrap_or_default(),
         }),
         images_not_taken: shared.not_taken.load(Ordering::Relaxed),
         images,
@@ -150,7 +150,7 @@ fn send(event: &SensorEvent, events: &InboxSender<TimedEvent>) -> Result<(), App
 }
 
 /// The camera, one image at a time; returns the images' ages at delivery, ms.
-fn take(mut camera: CameraAside, shots: &Receiver<Shot>, shared: &Shared) -> Result<Histogram, AppError> {
+fn take(mut camera: DetachedCamera, shots: &Receiver<Shot>, shared: &Shared) -> Result<Histogram, AppError> {
     let mut ages = Histogram::default();
     for shot in shots {
         let image = camera.take(&shot).map_err(|error| AppError::Input(error.to_string()))?;

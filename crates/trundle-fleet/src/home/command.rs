@@ -9,12 +9,12 @@ const MAX_COMMAND_BYTES: usize = 1024;
 /// A command of a home.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HomeCommand {
-    /// Go on after a pause; else explore.
+    /// Continue after a pause; else explore.
     Start,
     /// Stop, and keep the task.
     Pause,
-    /// Go on after a pause.
-    GoOn,
+    /// Continue after a pause.
+    Continue,
     /// Stop, and drop the task.
     Stop,
     /// Explore until the map is complete.
@@ -65,7 +65,7 @@ fn of_word(word: &str) -> Result<HomeCommand, String> {
     Ok(match word {
         "start" => HomeCommand::Start,
         "pause" => HomeCommand::Pause,
-        "continue" => HomeCommand::GoOn,
+        "continue" => HomeCommand::Continue,
         "stop" => HomeCommand::Stop,
         "explore" => HomeCommand::Explore,
         "return" => HomeCommand::Return,

@@ -1,6 +1,6 @@
 //! The state of a robot for a home.
 
-use crate::robot_glance::RobotGlance;
+use crate::robot_status::RobotStatus;
 use serde::Serialize;
 use trundle_runtime::{DriveState, MotionHold, Task};
 
@@ -29,7 +29,7 @@ pub struct HomeState {
 
 impl HomeState {
     /// The state of a view.
-    pub fn of(view: &RobotGlance) -> Self {
+    pub fn of(view: &RobotStatus) -> Self {
         let hold = view.hold.map(|hold| hold.to_string());
         let pose = view.estimate.pose;
         let rounded = |value: f64, places: f64| (value * places).round() / places;
@@ -54,7 +54,7 @@ impl HomeState {
 }
 
 /// Source: the states of a vacuum entity of Home Assistant.
-fn word_of(view: &RobotGlance) -> &'static str {
+fn word_of(view: &RobotStatus) -> &'static str {
     let is_charging = view.battery.is_some_and(|battery| battery.is_charging);
     match (view.hold, open_task(view)) {
         (Some(MotionHold::Paused), _) => "paused",
@@ -67,6 +67,6 @@ fn word_of(view: &RobotGlance) -> &'static str {
     }
 }
 
-fn open_task(view: &RobotGlance) -> Option<&Task> {
+fn open_task(view: &RobotStatus) -> Option<&Task> {
     view.mission.task.as_ref().filter(|_| !view.mission.is_over)
 }

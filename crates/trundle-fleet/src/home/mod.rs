@@ -10,7 +10,7 @@ pub use command::{HomeCommand, read_home_command};
 
 use crate::broker::Publication;
 use crate::robot_commands::RobotCommands;
-use crate::robot_glance::RobotGlance;
+use crate::robot_status::RobotStatus;
 use crate::{Places, RobotFacts, RobotName};
 use discovery::{DiscoveryTopics, discovery};
 use home_state::HomeState;
@@ -81,14 +81,14 @@ impl Home {
         &mut self,
         topic: &str,
         payload: &[u8],
-        view: &RobotGlance,
+        view: &RobotStatus,
         robot: &mut dyn RobotCommands,
     ) {
         if topic != self.topics.command {
             return;
         }
         let done = read_home_command(payload)
-            .and_then(|command| steering::obey(&command, view, self.places.as_ref(), robot));
+            .and_then(|command| steering::execute(&command, view, self.places.as_ref(), robot));
         let reply = match done {
             Ok(text) => json!({ "accepted": true, "text": text }),
             Err(text) => json!({ "accepted": false, "text": text }),
@@ -100,7 +100,7 @@ impl Home {
     pub fn publications(
         &mut self,
         passed: Duration,
-        view: &RobotGlance,
+        view: &RobotStatus,
         map: Option<&MapView>,
     ) -> Vec<Publication> {
         self.since_state += passed;
@@ -121,7 +121,7 @@ impl Home {
         due
     }
 
-    fn due_state(&mut self, view: &RobotGlance) -> Option<Publication> {
+    fn due_state(&mut self, view: &RobotStatus) -> Option<Publication> {
         let state = HomeState::of(view);
         let is_due = match &self.sent {
             None => true,

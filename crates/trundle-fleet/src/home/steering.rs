@@ -3,23 +3,23 @@
 use super::command::HomeCommand;
 use crate::Places;
 use crate::robot_commands::RobotCommands;
-use crate::robot_glance::RobotGlance;
+use crate::robot_status::RobotStatus;
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task};
 
 /// Carries out a command; returns the robot's activity in words.
 ///
 /// # Errors
 /// Reason why the robot cannot carry the command out.
-pub fn obey(
+pub fn execute(
     command: &HomeCommand,
-    view: &RobotGlance,
+    view: &RobotStatus,
     places: &dyn Places,
     robot: &mut dyn RobotCommands,
 ) -> Result<String, String> {
     let is_paused = view.hold == Some(MotionHold::Paused);
     let command = match command {
         HomeCommand::Pause => OperatorCommand::Pause,
-        HomeCommand::GoOn => OperatorCommand::Continue,
+        HomeCommand::Continue => OperatorCommand::Continue,
         HomeCommand::Start if is_paused => OperatorCommand::Continue,
         HomeCommand::Stop => OperatorCommand::cancel(),
         task => {
@@ -37,7 +37,7 @@ pub fn obey(
     Ok(text)
 }
 
-fn task_of(command: &HomeCommand, view: &RobotGlance, places: &dyn Places) -> Result<Task, String> {
+fn task_of(command: &HomeCommand, view: &RobotStatus, places: &dyn Places) -> Result<Task, String> {
     Ok(match command {
         HomeCommand::Return => Task::Return,
         HomeCommand::Dock => Task::Dock,

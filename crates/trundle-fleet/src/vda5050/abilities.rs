@@ -39,7 +39,7 @@ impl Ability {
 pub const ABILITIES: [Ability; 9] = [
     Ability::instant("cancelOrder", "Stops at once and drops the order."),
     Ability::instant("startPause", "Stops, and keeps the order."),
-    Ability::instant("stopPause", "Goes on after a pause."),
+    Ability::instant("stopPause", "Continues after a pause."),
     Ability::instant("stateRequest", "Sends the state."),
     Ability::instant("factsheetRequest", "Sends the factsheet."),
     Ability {

@@ -2,7 +2,7 @@
 
 use super::message::OrderNode;
 use crate::robot_commands::RobotCommands;
-use crate::robot_glance::RobotGlance;
+use crate::robot_status::RobotStatus;
 use std::time::Duration;
 use trundle_core::Pose2;
 use trundle_runtime::{Mission, OperatorCommand, Task, TaskEnd};
@@ -22,7 +22,7 @@ pub struct Drive {
 /// State of a drive.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DriveEnd {
-    /// Under way.
+    /// In execution.
     Open,
     /// The node is reached.
     Arrived,
@@ -55,7 +55,7 @@ impl Drive {
     }
 
     /// Updates and returns the state of the drive.
-    pub fn step(&mut self, passed: Duration, view: &RobotGlance) -> DriveEnd {
+    pub fn step(&mut self, passed: Duration, view: &RobotStatus) -> DriveEnd {
         if let Some(since) = &mut self.failed {
             *since += passed;
             self.is_due = *since >= RETRY_PERIOD;

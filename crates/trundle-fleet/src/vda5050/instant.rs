@@ -6,7 +6,7 @@ use super::node_action::{ActionEnd, NodeAction};
 use super::order_check::{check_action, invalid, require_size};
 use super::vehicle::Vehicle;
 use crate::robot_commands::RobotCommands;
-use crate::robot_glance::RobotGlance;
+use crate::robot_status::RobotStatus;
 use std::time::Duration;
 use trundle_core::Pose2;
 use trundle_runtime::{MotionHold, OperatorCommand, PoseGuess};
@@ -21,14 +21,14 @@ const REST_RATE_RAD_S: f64 = 0.02;
 
 /// Whether a robot is at rest.
 #[must_use]
-pub fn is_at_rest(view: &RobotGlance) -> bool {
+pub fn is_at_rest(view: &RobotStatus) -> bool {
     let twist = view.estimate.twist;
     twist.v.abs() < REST_SPEED_M_S && twist.omega.abs() < REST_RATE_RAD_S
 }
 
 impl Vehicle {
     /// Takes a message of the topic `instantActions`.
-    pub fn on_instant_actions(&mut self, payload: &[u8], view: &RobotGlance, robot: &mut dyn RobotCommands) {
+    pub fn on_instant_actions(&mut self, payload: &[u8], view: &RobotStatus, robot: &mut dyn RobotCommands) {
         match read(payload) {
             Ok(actions) => actions.into_iter().for_each(|action| self.begin_instant(action, view, robot)),
             Err(error) => self.errors.add(error),
@@ -36,7 +36,7 @@ impl Vehicle {
     }
 
     /// Begins an action; one of a name that is known was sent twice and is ignored.
-    fn begin_instant(&mut self, action: Action, view: &RobotGlance, robot: &mut dyn RobotCommands) {
+    fn begin_instant(&mut self, action: Action, view: &RobotStatus, robot: &mut dyn RobotCommands) {
         if self.book.knows_action(&action.action_id) {
             return;
         }
@@ -62,7 +62,7 @@ impl Vehicle {
     fn try_instant(
         &mut self,
         action: &Action,
-        view: &RobotGlance,
+        view: &RobotStatus,
         robot: &mut dyn RobotCommands,
     ) -> Result<ActionStatus, ErrorReport> {
         let refused = |text: String| ErrorReport::warning("instantActionError", text);
@@ -105,7 +105,7 @@ impl Vehicle {
     ) -> Result<ActionStatus, ErrorReport> {
         let refused = |text: String| ErrorReport::warning("instantActionError", text);
         if self.book.is_active() {
-            return Err(refused("an order is under way: cancel it first".to_owned()));
+            return Err(refused("an order is in execution: cancel it first".to_owned()));
         }
         let (work, mission) = NodeAction::begin(action.clone(), robot).map_err(refused)?;
         self.charging = Some(work);
@@ -113,7 +113,7 @@ impl Vehicle {
         Ok(ActionStatus::Running)
     }
 
-    fn given_pose(&self, action: &Action, view: &RobotGlance) -> Result<PoseGuess, String> {
+    fn given_pose(&self, action: &Action, view: &RobotStatus) -> Result<PoseGuess, String> {
         let number = |key: &str| {
             action.number(key).ok_or_else(|| format!("initPosition needs the parameter {key}, a number"))
         };
@@ -133,7 +133,7 @@ impl Vehicle {
     }
 
     /// Ends the finished actions.
-    pub(super) fn follow_instant_actions(&mut self, view: &RobotGlance) {
+    pub(super) fn follow_instant_actions(&mut self, view: &RobotStatus) {
         let is_paused = view.hold == Some(MotionHold::Paused);
         for action in std::mem::take(&mut self.pending) {
             let is_done = match action.action_type.as_str() {
@@ -153,8 +153,8 @@ impl Vehicle {
         }
     }
 
-    /// Goes on with the instant action of charging.
-    pub(super) fn follow_charging(&mut self, passed: Duration, view: &RobotGlance) {
+    /// Continues the instant action of charging.
+    pub(super) fn follow_charging(&mut self, passed: Duration, view: &RobotStatus) {
         let Some(work) = &mut self.charging else { return };
         let end = match work.step(passed, view) {
             ActionEnd::Open if self.mode(view) == OperatingMode::Automatic => return,

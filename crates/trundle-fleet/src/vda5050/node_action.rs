@@ -3,7 +3,7 @@
 use super::abilities::wait_s;
 use super::message::Action;
 use crate::robot_commands::RobotCommands;
-use crate::robot_glance::RobotGlance;
+use crate::robot_status::RobotStatus;
 use std::time::Duration;
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task, TaskEnd};
 
@@ -27,7 +27,7 @@ enum Work {
 /// State of an action.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ActionEnd {
-    /// Under way.
+    /// In execution.
     Open,
     /// Done.
     Done,
@@ -67,7 +67,7 @@ impl NodeAction {
     }
 
     /// Continues the action, `passed` after the last step. A pause stops its time.
-    pub fn step(&mut self, passed: Duration, view: &RobotGlance) -> ActionEnd {
+    pub fn step(&mut self, passed: Duration, view: &RobotStatus) -> ActionEnd {
         match &mut self.work {
             Work::Nothing => ActionEnd::Done,
             Work::Wait(left) => {

@@ -7,7 +7,7 @@ use super::message::{
 };
 use super::order_book::OrderBook;
 use super::vehicle::Vehicle;
-use crate::robot_glance::RobotGlance;
+use crate::robot_status::RobotStatus;
 use trundle_core::wrap_angle;
 use trundle_runtime::{DriveState, MotionHold};
 
@@ -16,7 +16,7 @@ const UNKNOWN_CHARGE: f64 = 80.0;
 
 /// The state of a vehicle after a view of the run.
 #[must_use]
-pub fn vehicle_state(vehicle: &Vehicle, header: MessageHeader, view: &RobotGlance) -> VehicleState {
+pub fn vehicle_state(vehicle: &Vehicle, header: MessageHeader, view: &RobotStatus) -> VehicleState {
     VehicleState {
         header,
         maps: vec![LoadedMap {
@@ -54,7 +54,7 @@ fn order_progress(book: &OrderBook) -> OrderProgress {
 
 /// Pose of the robot.
 #[must_use]
-pub fn robot_position(view: &RobotGlance, map_id: &str) -> RobotPosition {
+pub fn robot_position(view: &RobotStatus, map_id: &str) -> RobotPosition {
     let pose = view.estimate.pose;
     RobotPosition {
         x: pose.x,
@@ -68,12 +68,12 @@ pub fn robot_position(view: &RobotGlance, map_id: &str) -> RobotPosition {
 
 /// Velocity of the robot.
 #[must_use]
-pub fn velocity(view: &RobotGlance) -> Velocity {
+pub fn velocity(view: &RobotStatus) -> Velocity {
     let twist = view.estimate.twist;
     Velocity { vx: twist.v, vy: 0.0, omega: twist.omega }
 }
 
-fn battery_state(view: &RobotGlance) -> ChargeState {
+fn battery_state(view: &RobotStatus) -> ChargeState {
     let charge = view.battery.and_then(|battery| battery.charge);
     ChargeState {
         battery_charge: charge.map_or(UNKNOWN_CHARGE, |charge| 100.0 * charge),
@@ -83,13 +83,13 @@ fn battery_state(view: &RobotGlance) -> ChargeState {
 }
 
 /// Safety stops: conditions of the body, without pauses.
-fn safety_state(view: &RobotGlance) -> SafetyState {
+fn safety_state(view: &RobotStatus) -> SafetyState {
     let field_violation = view.hold.is_some_and(|hold| hold != MotionHold::Paused);
     SafetyState { e_stop: "NONE", field_violation }
 }
 
 /// Activity of the robot, why it does not move on, and its unknowns.
-fn information(view: &RobotGlance) -> Vec<Information> {
+fn information(view: &RobotStatus) -> Vec<Information> {
     let info = |info_type, info_description| Information { info_type, info_description, info_level: "INFO" };
     let mut all = vec![info("driveState", view.state.to_string())];
     all.extend(view.hold.map(|hold| info("hold", hold.to_string())));

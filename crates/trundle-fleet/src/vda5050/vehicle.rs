@@ -10,7 +10,7 @@ use super::order_decision::{OrderDecision, decide, is_within_deviation};
 use super::{abilities::require_able, message::ActionStatus};
 use crate::robot_commands::RobotCommands;
 use crate::robot_facts::RobotFacts;
-use crate::robot_glance::RobotGlance;
+use crate::robot_status::RobotStatus;
 use std::time::Duration;
 use trundle_runtime::OperatorCommand;
 
@@ -67,7 +67,7 @@ impl Vehicle {
     }
 
     /// Takes a message of the topic `order`.
-    pub fn on_order(&mut self, payload: &[u8], view: &RobotGlance) {
+    pub fn on_order(&mut self, payload: &[u8], view: &RobotStatus) {
         let order = match read_order(payload) {
             Ok(order) => order,
             Err(error) => return self.errors.add(error),
@@ -79,7 +79,7 @@ impl Vehicle {
         }
     }
 
-    fn accept(&mut self, order: Order, view: &RobotGlance) -> Result<(), ErrorReport> {
+    fn accept(&mut self, order: Order, view: &RobotStatus) -> Result<(), ErrorReport> {
         let decision = decide(&order, &self.book, view.estimate.pose)?;
         if decision == OrderDecision::Discard {
             return Ok(());
@@ -97,7 +97,7 @@ impl Vehicle {
     }
 
     /// A robot that is being cancelled or driven by a person accepts no order.
-    fn require_free(&self, view: &RobotGlance) -> Result<(), ErrorReport> {
+    fn require_free(&self, view: &RobotStatus) -> Result<(), ErrorReport> {
         if self.is_cancelling() {
             return Err(ErrorReport::warning("orderError", "the present order is being cancelled"));
         }
@@ -122,19 +122,19 @@ impl Vehicle {
 
     /// Controller of the robot: a person if another front end gave the present mission.
     #[must_use]
-    pub fn mode(&self, view: &RobotGlance) -> OperatingMode {
+    pub fn mode(&self, view: &RobotStatus) -> OperatingMode {
         let is_foreign = view.mission.id > self.own_mission;
         let is_open = view.mission.task.is_some() && !view.mission.is_over;
         if is_foreign && is_open { OperatingMode::Manual } else { OperatingMode::Automatic }
     }
 
     /// Whether the robot still follows a mission of the master, or its initial mission.
-    fn is_under_way(&self, view: &RobotGlance) -> bool {
+    fn is_under_way(&self, view: &RobotStatus) -> bool {
         view.mission.id != self.own_mission || (view.mission.task.is_some() && !view.mission.is_over)
     }
 
-    /// Goes on with the order and the instant actions, `passed` after the last step.
-    pub fn step(&mut self, passed: Duration, view: &RobotGlance, robot: &mut dyn RobotCommands) {
+    /// Continues the order and the instant actions, `passed` after the last step.
+    pub fn step(&mut self, passed: Duration, view: &RobotStatus, robot: &mut dyn RobotCommands) {
         if self.book.is_active() && view.mission.id > self.own_mission {
             self.abort();
         }
@@ -170,7 +170,7 @@ impl Vehicle {
     }
 
     /// The action at the last node, and the next one when it has ended.
-    fn follow_action(&mut self, passed: Duration, view: &RobotGlance, robot: &mut dyn RobotCommands) {
+    fn follow_action(&mut self, passed: Duration, view: &RobotStatus, robot: &mut dyn RobotCommands) {
         if let Some(action) = &mut self.action {
             match action.step(passed, view) {
                 ActionEnd::Open => return,
@@ -209,7 +209,7 @@ impl Vehicle {
         self.book.set_status(id, status, reason);
     }
 
-    fn follow_drive(&mut self, passed: Duration, view: &RobotGlance) {
+    fn follow_drive(&mut self, passed: Duration, view: &RobotStatus) {
         let Some(drive) = &mut self.drive else { return };
         let rolls_on =
             !self.book.is_at_end_of_base()
@@ -238,7 +238,7 @@ impl Vehicle {
         let node = self.book.nodes().front().map(|node| node.node_id.clone()).unwrap_or_default();
         let text = format!("node {node} was not reached: {reason}");
         let error = ErrorReport::warning("driveError", text).about("topic", "order").about("nodeId", node);
-        let error = error.hint("free the way or cancel the order; the robot tries again every 10 s");
+        let error = error.hint("clear the path or cancel the order; the robot tries again every 10 s");
         self.errors.replace(error.about("orderId", self.book.order_id()));
     }
 
@@ -252,7 +252,7 @@ impl Vehicle {
     }
 
     /// Starts the drive to the next node of the base; a node that is already reached ends immediately.
-    fn drive_on(&mut self, view: &RobotGlance, robot: &mut dyn RobotCommands) {
+    fn drive_on(&mut self, view: &RobotStatus, robot: &mut dyn RobotCommands) {
         let Some((node, edge)) = self.book.next_stop() else { return };
         if !self.is_under_way(view) && is_within_deviation(node, view.estimate.pose) {
             return self.reach();

@@ -7,7 +7,7 @@ use trundle_app::operator::MissionView;
 use trundle_core::{DriveLimits, Footprint, Pose2};
 use trundle_fleet::vda5050::message::{HeaderCounter, Identity, Topic};
 use trundle_fleet::vda5050::{Vehicle, vehicle_state};
-use trundle_fleet::{RobotCommands, RobotFacts, RobotGlance};
+use trundle_fleet::{RobotCommands, RobotFacts, RobotStatus};
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task, TaskEnd, TaskRecord};
 
 /// The map of the tests.
@@ -16,13 +16,13 @@ pub const MAP: &str = "hall";
 /// A robot that acts immediately but drives only at a test's request.
 pub struct TestRobot {
     pub vehicle: Vehicle,
-    pub view: RobotGlance,
+    pub view: RobotStatus,
     pub sent: Vec<OperatorCommand>,
     headers: HeaderCounter,
 }
 
 struct Commands<'a> {
-    view: &'a mut RobotGlance,
+    view: &'a mut RobotStatus,
     sent: &'a mut Vec<OperatorCommand>,
 }
 
@@ -56,7 +56,7 @@ impl TestRobot {
         };
         let identity = Identity { manufacturer: "trundle".to_owned(), serial_number: "r1".to_owned() };
         let (vehicle, headers) = (Vehicle::new(facts, MAP), HeaderCounter::new(identity));
-        Self { vehicle, view: RobotGlance::at_rest(Pose2::new(0.0, 0.0, 0.0)), sent: Vec::new(), headers }
+        Self { vehicle, view: RobotStatus::at_rest(Pose2::new(0.0, 0.0, 0.0)), sent: Vec::new(), headers }
     }
 
     /// A message of the master on the topic `order`.

@@ -4,14 +4,14 @@ use std::time::Duration;
 use trundle::core::{DriveLimits, Footprint, Pose2};
 use trundle::fleet::vda5050::message::{HeaderCounter, Identity, Topic};
 use trundle::fleet::vda5050::{Vehicle, vehicle_state};
-use trundle::fleet::{RobotCommands, RobotFacts, RobotGlance, read_home_command};
+use trundle::fleet::{RobotCommands, RobotFacts, RobotStatus, read_home_command};
 use trundle::runtime::OperatorCommand;
 
 /// A robot that accepts every command without effect.
 #[derive(Default)]
-struct Obedient(u64);
+struct AcceptingRobot(u64);
 
-impl RobotCommands for Obedient {
+impl RobotCommands for AcceptingRobot {
     fn send(&mut self, command: OperatorCommand) -> Result<u64, String> {
         command.validated().map_err(|error| error.to_string())?;
         self.0 += 1;
@@ -21,8 +21,8 @@ impl RobotCommands for Obedient {
 
 /// A message as an order, then as instant actions; the state after each must be JSON.
 pub fn vda5050(bytes: &[u8]) {
-    let view = RobotGlance::at_rest(Pose2::new(0.0, 0.0, 0.0));
-    let (mut vehicle, mut robot) = (Vehicle::new(facts(), "map"), Obedient::default());
+    let view = RobotStatus::at_rest(Pose2::new(0.0, 0.0, 0.0));
+    let (mut vehicle, mut robot) = (Vehicle::new(facts(), "map"), AcceptingRobot::default());
     let identity = Identity { manufacturer: "trundle".to_owned(), serial_number: "r1".to_owned() };
     let mut headers = HeaderCounter::new(identity);
     for is_order in [true, false, true] {

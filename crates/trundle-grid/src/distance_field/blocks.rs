@@ -40,7 +40,7 @@ impl BlockMaxima {
                     .iter_mut()
                     .zip(line.chunks(BLOCK_SIDE_CELLS))
                 {
-                    *maximum = cells.iter().fold(*maximum, |most, d| most.max(*d));
+                    *maximum = cells.iter().fold(*maximum, |max, d| max.max(*d));
                 }
             }
         }

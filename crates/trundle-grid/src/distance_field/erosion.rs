@@ -38,9 +38,9 @@ impl Erosion {
     pub(super) fn erode(&mut self, gaps: Gaps<'_>, cols: Range<usize>) {
         self.squared.clear();
         self.squared.extend(gaps.of[cols.clone()].iter().map(|gap| height(*gap, gaps.none)));
-        let most = self.squared.iter().fold(0.0_f32, |most, own| if *own > most { *own } else { most });
+        let max = self.squared.iter().fold(0.0_f32, |max, own| if *own > max { *own } else { max });
         let farthest = height(gaps.none - 1, gaps.none);
-        let reach = looks(most.min(farthest), gaps.of.len() + 1);
+        let reach = looks(max.min(farthest), gaps.of.len() + 1);
         let blocks = cols.len().div_ceil(CELLS_PER_BLOCK);
         self.squared.resize(blocks * CELLS_PER_BLOCK, 0.0);
         self.fill_edges(gaps, cols.start, blocks * CELLS_PER_BLOCK, reach);
@@ -106,7 +106,7 @@ fn erode_block(block: &mut [f32; CELLS_PER_BLOCK], edge: &[f32], at: usize, reac
             }
         }
         let next = ((2 * (begin + EDGES_PER_CHECK) + 1) * (2 * (begin + EDGES_PER_CHECK) + 1)) as f32;
-        if best.iter().fold(0.0_f32, |most, b| if *b > most { *b } else { most }) <= next {
+        if best.iter().fold(0.0_f32, |max, b| if *b > max { *b } else { max }) <= next {
             break;
         }
     }

@@ -30,7 +30,7 @@ impl DistanceField {
 
     /// Whether a disc of `radius` around `point` is free of contact: by interpolation if that is certain, else by cell squares.
     #[inline]
-    pub fn keeps(&self, point: Vector2, radius: f64) -> bool {
+    pub fn has_clearance(&self, point: Vector2, radius: f64) -> bool {
         let quick = self.distance(point);
         if quick >= radius + self.overestimate(radius) {
             return true;

@@ -177,7 +177,7 @@ proptest! {
         let point = Vector2::new(x, y);
         let clearance = field.clearance(point, 1.0);
         prop_assume!((clearance - radius).abs() > 1e-5);
-        prop_assert_eq!(field.keeps(point, radius), clearance > radius, "{} m", clearance);
+        prop_assert_eq!(field.has_clearance(point, radius), clearance > radius, "{} m", clearance);
     }
 
     /// Interpolated distances are at most the documented excess above the truth.

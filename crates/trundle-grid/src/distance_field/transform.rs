@@ -110,8 +110,8 @@ impl Transform<'_> {
             reach * reach >= along * along + across * across
         };
         // No distance is above the reach.
-        let most = (self.reach / resolution).min(width as f64) as usize + 3;
-        let cols = dirty.cols.start.saturating_sub(most)..(dirty.cols.end + most).min(width);
+        let max = (self.reach / resolution).min(width as f64) as usize + 3;
+        let cols = dirty.cols.start.saturating_sub(max)..(dirty.cols.end + max).min(width);
         let first = cols.clone().find(may_change)?;
         let last = (first..cols.end).rev().find(may_change)?;
         Some(first..last + 1)

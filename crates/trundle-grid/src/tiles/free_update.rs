@@ -41,13 +41,13 @@ impl FreeUpdate {
         Self { free: free.unsigned_abs(), low: biased(low), removed_at: biased(removed_at) }
     }
 
-    /// Updates the cells of `cells` that are not in `except` and whose log-odds are at most `most`. Cells whose own obstacle falls
+    /// Updates the cells of `cells` that are not in `except` and whose log-odds are at most `max`. Cells whose own obstacle falls
     /// to the removal threshold are appended to `removed`. Returns the number of cells of the mask difference.
     pub(super) fn apply(
         &self,
         map: &mut TileMap,
         (cells, except): (&CellMask, &CellMask),
-        most: i8,
+        max: i8,
         removed: &mut Vec<(i32, i32)>,
     ) -> usize {
         let mut count = 0;
@@ -57,7 +57,7 @@ impl FreeUpdate {
             let left: u32 = words.iter().map(|word| word.count_ones()).sum();
             if left > 0 {
                 count += left as usize;
-                self.update_tile(map.tile_mut(at), (at, &words), most, removed);
+                self.update_tile(map.tile_mut(at), (at, &words), max, removed);
             }
         }
         count
@@ -67,15 +67,15 @@ impl FreeUpdate {
         &self,
         tile: &mut Tile,
         cells: ((i32, i32), &TileMask),
-        most: i8,
+        max: i8,
         removed: &mut Vec<(i32, i32)>,
     ) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             // SAFETY: the processor has the only feature that the function is compiled for.
-            return unsafe { self.update_tile_by_avx2(tile, cells, most, removed) };
+            return unsafe { self.update_tile_by_avx2(tile, cells, max, removed) };
         }
-        self.update_rows(tile, cells, most, removed);
+        self.update_rows(tile, cells, max, removed);
     }
 
     /// [`Self::update_rows`] compiled for vectors of 32 cells.
@@ -85,10 +85,10 @@ impl FreeUpdate {
         &self,
         tile: &mut Tile,
         cells: ((i32, i32), &TileMask),
-        most: i8,
+        max: i8,
         removed: &mut Vec<(i32, i32)>,
     ) {
-        self.update_rows(tile, cells, most, removed);
+        self.update_rows(tile, cells, max, removed);
     }
 
     #[inline(always)]
@@ -96,14 +96,14 @@ impl FreeUpdate {
         &self,
         tile: &mut Tile,
         (at, words): ((i32, i32), &TileMask),
-        most: i8,
+        max: i8,
         removed: &mut Vec<(i32, i32)>,
     ) {
         for (y, &word) in words.iter().enumerate().filter(|(_, word)| **word != 0) {
             let line = tile.log_odds[y << Tile::BITS..].first_chunk_mut::<{ Tile::SIDE }>();
             let line = line.expect("invariant: a tile holds whole rows");
             let before = *line;
-            self.update_row(line, word, biased(most));
+            self.update_row(line, word, biased(max));
             if tile.own[y] & word != 0 {
                 self.find_removed(tile, (at, y), &before, removed);
             }
@@ -113,14 +113,14 @@ impl FreeUpdate {
     /// Updates the cells of a row whose bits are set. The loop has no branch, which lets the compiler vectorise it. Log-odds plus 128 are
     /// unsigned bytes, and saturating difference and maximum of unsigned bytes are single instructions.
     #[inline(always)]
-    fn update_row(&self, row: &mut Row, word: u32, most: u8) {
+    fn update_row(&self, row: &mut Row, word: u32, max: u8) {
         let mut selected = [0_u8; Tile::SIDE];
         for (part, byte) in selected.as_chunks_mut::<8>().0.iter_mut().zip(word.to_le_bytes()) {
             *part = SPREAD[usize::from(byte)];
         }
         for (value, selected) in row.iter_mut().zip(selected) {
             let old = biased(*value);
-            let selected = selected & if old > most { 0 } else { 255 };
+            let selected = selected & if old > max { 0 } else { 255 };
             let new = old.saturating_sub(self.free).max(self.low);
             *value = (((new & selected) | (old & !selected)) ^ 128) as i8;
         }
@@ -155,7 +155,7 @@ mod tests {
     proptest! {
         #[test]
         fn a_row_is_updated_as_cell_by_cell(
-            values in prop::collection::vec(any::<i8>(), Tile::SIDE), word in any::<u32>(), most in any::<i8>(),
+            values in prop::collection::vec(any::<i8>(), Tile::SIDE), word in any::<u32>(), max in any::<i8>(),
         ) {
             let update = FreeUpdate::new(13, -64, -26);
             let mut tile = Tile::UNKNOWN;
@@ -166,12 +166,12 @@ mod tests {
             let mut words = [0; Tile::SIDE];
             words[1] = word;
             let (mut removed, mut removed_plainly) = (Vec::new(), Vec::new());
-            update.update_tile(&mut tile, ((2, -1), &words), most, &mut removed);
-            update.update_rows(&mut plain, ((2, -1), &words), most, &mut removed_plainly);
+            update.update_tile(&mut tile, ((2, -1), &words), max, &mut removed);
+            update.update_rows(&mut plain, ((2, -1), &words), max, &mut removed_plainly);
             prop_assert!(tile.log_odds == plain.log_odds && removed == removed_plainly);
             let mut expected = Vec::new();
             for (k, &old) in values.iter().enumerate() {
-                let selected = word >> k & 1 == 1 && old <= most;
+                let selected = word >> k & 1 == 1 && old <= max;
                 let new = if selected { (i16::from(old) - 13).max(-64) as i8 } else { old };
                 prop_assert_eq!(tile.log_odds[32 + k], new);
                 if old > -26 && new <= -26 && k % 2 == 0 {

@@ -78,7 +78,7 @@ proptest! {
     }
 
     #[test]
-    fn a_scan_of_unseen_beams_says_nothing(pose in any_pose(), count in 1_usize..50) {
+    fn a_scan_of_unseen_beams_changes_no_cell(pose in any_pose(), count in 1_usize..50) {
         let scan = Scan::new(Stamp::default(), Vector2::zeros(), 0.0, 0.01, vec![Beam::Unseen; count]).unwrap();
         let cells = rasterised(&config(), pose, &scan);
         prop_assert_eq!((cells.hits.len(), cells.free.len(), cells.ignored_beams, cells.reach()), (0, 0, 0, None));

@@ -144,10 +144,10 @@ impl Fields<'_> {
         value.ok_or_else(|| format!("{name} is '{}', expected a finite number", excerpt(text)))
     }
 
-    fn count(&mut self, name: &str, least: usize) -> Result<usize, String> {
+    fn count(&mut self, name: &str, min: usize) -> Result<usize, String> {
         let text = self.rest.next().ok_or_else(|| format!("the line ends before its {name}"))?;
-        let count = text.parse::<usize>().ok().filter(|count| (least..=MAX_BEAMS).contains(count));
-        count.ok_or_else(|| format!("{name} is '{}', expected {least} to {MAX_BEAMS}", excerpt(text)))
+        let count = text.parse::<usize>().ok().filter(|count| (min..=MAX_BEAMS).contains(count));
+        count.ok_or_else(|| format!("{name} is '{}', expected {min} to {MAX_BEAMS}", excerpt(text)))
     }
 
     /// Ranges, m. A text that is not a number is NaN: an unseen beam.

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn robotlaser_says_its_own_angles_and_limit() {
+    fn robotlaser_has_its_own_angles_and_limit() {
         let line = "ROBOTLASER1 0 -1 2 1 8 0.01 0 3 1 2 8 1 77 0.1 0 0 0 0 0 0 0 0 0 0 12.25 host 0";
         let log = read(line, LaserLogOptions::default()).unwrap();
         let scan = &log.scans[0].scan;

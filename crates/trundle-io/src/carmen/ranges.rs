@@ -17,7 +17,7 @@ pub(super) fn no_return_from(limit: f64) -> f64 {
 
 /// The largest reading, m, if many beams end near it: a laser without a return reports approximately its limit.
 pub(super) fn limit(lasers: &[(usize, &LaserLine)]) -> Option<f64> {
-    /// Least part of all beams. Source: ours.
+    /// Smallest share of all beams. Source: ours.
     const SHARE: f64 = 0.001;
     let readings = || lasers.iter().flat_map(|(_, l)| &l.ranges).copied().filter(|r| r.is_finite());
     let greatest = readings().fold(0.0, f64::max);

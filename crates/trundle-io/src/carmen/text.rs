@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn marks_ends_of_lines_and_comments_say_nothing() {
+    fn marks_ends_of_lines_and_comments_are_ignored() {
         let found = lines("\u{feff}# x\r\n a b \r\n\r\nc".into()).unwrap();
         assert_eq!(found, [(2, "a b".to_owned()), (4, "c".to_owned())]);
         assert_eq!(lines("\u{feff}a".into()).unwrap(), [(1, "a".to_owned())]);

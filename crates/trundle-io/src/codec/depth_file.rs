@@ -157,9 +157,9 @@ mod tests {
             (tiff::<colortype::Gray32>(&[2000; 15]), "32-bit whole-numbered"),
             (tiff::<colortype::GrayI16>(&[2000; 15]), "16-bit signed whole-numbered"),
         ] {
-            let said = problem(&bytes);
-            assert!(said.contains(&format!("has {found} pixels, expected 16-bit grey")), "{said}");
-            assert!(!said.contains("too coarse"), "{said}");
+            let message = problem(&bytes);
+            assert!(message.contains(&format!("has {found} pixels, expected 16-bit grey")), "{message}");
+            assert!(!message.contains("too coarse"), "{message}");
         }
         assert!(problem(b"II+\0\x08\0\0\0").contains("this is a BigTIFF picture, expected a TIFF"));
         let lossy = problem(&exr_by_dwaa());

@@ -47,7 +47,7 @@ impl EncodedRgbd {
     }
 }
 
-/// A [`SensorEvent`] as it travels and is recorded. Feed the robot what `encode` then `decode` give, and a replay of
+/// A [`SensorEvent`] in its recorded form. Give the robot the result of `encode` and then `decode`, and a replay of
 /// the recording feeds it the very same.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EncodedEvent {

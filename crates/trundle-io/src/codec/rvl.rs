@@ -105,7 +105,7 @@ impl GroupWriter {
     }
 }
 
-/// Reads what [`GroupWriter`] writes.
+/// Reads the bytes of [`GroupWriter`].
 struct GroupReader<'a> {
     bytes: &'a [u8],
     word: u32,

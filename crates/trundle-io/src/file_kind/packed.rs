@@ -89,9 +89,9 @@ mod tests {
             (&gzip(&tar), "a tar archive packed with gzip", "tar xf"),
             (&zstd(&tar), "a tar archive packed with zstd", "tar xf"),
         ] {
-            let said = checked(bytes).unwrap_err();
-            assert!(said.starts_with(&format!("this is {name}, expected")), "{said}");
-            assert!(said.ends_with(&format!("; unpack it with `{program}`")), "{said}");
+            let message = checked(bytes).unwrap_err();
+            assert!(message.starts_with(&format!("this is {name}, expected")), "{message}");
+            assert!(message.ends_with(&format!("; unpack it with `{program}`")), "{message}");
         }
     }
 

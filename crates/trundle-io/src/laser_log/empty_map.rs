@@ -29,8 +29,9 @@ pub fn empty_map_cause(log: &LaserLog) -> String {
     if log.scans_without_return() == log.scans.len() {
         return no_return_cause(log);
     }
-    range_unit_hint(log)
-        .unwrap_or_else(|| format!("{} of {} scans met nothing", log.scans_without_return(), log.scans.len()))
+    range_unit_hint(log).unwrap_or_else(|| {
+        format!("{} of {} scans hit no obstacle", log.scans_without_return(), log.scans.len())
+    })
 }
 
 /// The likely cause if the scans of a log do not overlap with their map, by ranges and odometry.
@@ -65,16 +66,16 @@ pub fn no_return_cause(log: &LaserLog) -> String {
     }
     if log.bad_ranges > 0 {
         return format!(
-            "no beam of any scan met anything: {} ranges are negative, zero, infinite, not a number or below the laser's least range",
+            "no beam of any scan hit an obstacle: {} ranges are negative, zero, infinite, not a number or below the laser's minimum range",
             log.bad_ranges
         );
     }
     match log.max_range {
         Some(max) => format!(
-            "no beam of any scan met anything: every range is about the laser's largest range of {max} m or beyond it, or is none: are they \
+            "no beam of any scan hit an obstacle: every range is about the laser's largest range of {max} m or beyond it, or is none: are they \
              in centimetres or millimetres?"
         ),
-        None => "no beam of any scan met anything".to_owned(),
+        None => "no beam of any scan hit an obstacle".to_owned(),
     }
 }
 

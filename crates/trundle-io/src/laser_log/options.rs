@@ -21,7 +21,7 @@ pub struct LaserLogOptions {
 }
 
 impl LaserLogOptions {
-    /// Refuses what no laser can have.
+    /// Refuses values that no laser has.
     pub(crate) fn validate(&self) -> Result<(), Invalid> {
         self.laser_x.map_or(Ok(0.0), |x| require_in("laser_x", x, "m", -20.0, 20.0))?;
         self.laser_turn.map_or(Ok(0.0), |turn| require_finite("laser_turn", turn, "rad"))?;

@@ -22,10 +22,10 @@ pub(crate) fn chosen(
     asked: Option<&str>,
     kind: &str,
 ) -> Result<String, String> {
-    let most = counts.values().max().ok_or_else(|| format!("no {kind} in it"))?;
+    let max = counts.values().max().ok_or_else(|| format!("no {kind} in it"))?;
     let found = match asked {
         Some(asked) => counts.keys().find(|topic| is_named(topic, asked)),
-        None => counts.iter().find(|(_, count)| *count == most).map(|(topic, _)| topic),
+        None => counts.iter().find(|(_, count)| *count == max).map(|(topic, _)| topic),
     };
     found.cloned().ok_or_else(|| {
         let all: Vec<String> = counts.iter().map(|(topic, count)| format!("{topic} ({count})")).collect();

@@ -189,8 +189,8 @@ mod tests {
         fs::write(scenes.join("s.toml"), "[base]\nmap = \"../maps/map.yaml\"\n").unwrap();
         fs::write(maps.join("map.yaml"), "image: ../pictures/map.pgm\nsame: map.yaml\n").unwrap();
         fs::write(pictures.join("map.pgm"), "1").unwrap();
-        let said = refusal(&[&scenes.join("s.toml")], &pictures).unwrap();
-        assert!(said.contains("holds the input") && said.contains("map.pgm"), "{said}");
+        let message = refusal(&[&scenes.join("s.toml")], &pictures).unwrap();
+        assert!(message.contains("holds the input") && message.contains("map.pgm"), "{message}");
         let inputs = InputFiles::new([scenes.join("s.toml")]);
         assert!(inputs.require_other_than(&pictures.join("map.pgm")).is_err());
         assert_eq!(refusal(&[&scenes.join("s.toml")], &scratch.path().join("new")), None);

@@ -124,12 +124,12 @@ impl<'a> CdrReader<'a> {
         Ok(text.to_owned())
     }
 
-    /// The number of following elements, each at least `least` bytes long. A number too large for the rest of the message is an error,
+    /// The number of following elements, each at least `min` bytes long. A number too large for the rest of the message is an error,
     /// which prevents a large allocation.
-    pub(crate) fn count(&mut self, field: &'static str, least: usize) -> Result<usize, CdrError> {
+    pub(crate) fn count(&mut self, field: &'static str, min: usize) -> Result<usize, CdrError> {
         let count = self.u32(field)? as usize;
         let rest = self.bytes.len() - self.at;
-        if count.checked_mul(least).is_none_or(|bytes| bytes > rest) {
+        if count.checked_mul(min).is_none_or(|bytes| bytes > rest) {
             let problem = format!("{count} elements announced, {rest} bytes left");
             return Err(self.error(field, self.at - 4, problem));
         }

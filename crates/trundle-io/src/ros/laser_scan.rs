@@ -13,11 +13,11 @@ pub(super) struct ConvertedScan {
 }
 
 /// A laser whose plane is tilted by more than this does not see one plane of the room, deg. Source: ours.
-const MOST_TILTED_DEG: f64 = 15.0;
+const MAX_TILTED_DEG: f64 = 15.0;
 
 /// The scan of a message by a laser at `base_from_laser`: turned, to the side, upside down, its beams in either order.
 ///
-/// Infinite ranges and those from `max_range` on met nothing; negative ones, zero, NaN and those below the laser's least
+/// Infinite ranges and those from `max_range` on have no return; negative ones, zero, NaN and those below the laser's least
 /// range are bad. Both are unseen: that nothing came back does not prove that nothing is there.
 ///
 /// # Errors
@@ -31,8 +31,8 @@ pub(super) fn convert(
     check(message)?;
     let up = base_from_laser.rotate(Vector3::z()).z;
     let tilt = up.abs().min(1.0).acos().to_degrees();
-    if tilt > MOST_TILTED_DEG {
-        return Err(format!("the laser is tilted by {tilt:.1} deg, expected at most {MOST_TILTED_DEG}"));
+    if tilt > MAX_TILTED_DEG {
+        return Err(format!("the laser is tilted by {tilt:.1} deg, expected at most {MAX_TILTED_DEG}"));
     }
     let ahead = base_from_laser.rotate(Vector3::x());
     let turn = ahead.y.atan2(ahead.x);

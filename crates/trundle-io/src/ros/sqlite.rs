@@ -187,13 +187,13 @@ impl Node {
 
 /// Number of a row's bytes on its own page.
 fn local_bytes(length: usize, usable: usize) -> usize {
-    let most = usable - 35;
-    if length <= most {
+    let max = usable - 35;
+    if length <= max {
         return length;
     }
-    let least = (usable - 12) * 32 / 255 - 23;
-    let fitting = least + (length - least) % (usable - 4);
-    if fitting <= most { fitting } else { least }
+    let min = (usable - 12) * 32 / 255 - 23;
+    let fitting = min + (length - min) % (usable - 4);
+    if fitting <= max { fitting } else { min }
 }
 
 /// Seven bits per byte, the highest first; of a ninth byte all eight.

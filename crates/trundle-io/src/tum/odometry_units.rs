@@ -11,9 +11,9 @@ const MAX_TURN_RATE_RAD_S: f64 = 10.0;
 const MIN_FAST_SHARE: f64 = 0.05;
 /// Number of steps that must be too fast. Fewer prove no unit. Source: ours.
 const MIN_FAST_STEPS: usize = 3;
-/// Agreement of way and heading, 0 to 1, from which on they agree. Source: ours.
+/// Agreement of displacement and heading, 0 to 1, from which on they agree. Source: ours.
 const MIN_AGREEMENT: f64 = 0.8;
-/// Agreement of way and heading, 0 to 1, below which they contradict. Source: ours.
+/// Agreement of displacement and heading, 0 to 1, below which they contradict. Source: ours.
 const MAX_CONTRADICTION: f64 = 0.5;
 
 /// A row of odometry.
@@ -36,7 +36,7 @@ struct Step {
     /// Distance of the positions, m.
     distance: f64,
     /// Direction of motion, rad.
-    way: f64,
+    length: f64,
     /// Heading in the file, rad.
     heading: f64,
     /// Change of the heading, rad, at least 0; a jump by one turn counts as no change.
@@ -49,13 +49,13 @@ impl Step {
         let turn = (b.heading - a.heading).abs();
         let duration = *t1 - *t0;
         let turn = turn.min((TAU - turn).abs());
-        let step = Self { duration, distance: x.hypot(y), way: y.atan2(x), heading: a.heading, turn };
+        let step = Self { duration, distance: x.hypot(y), length: y.atan2(x), heading: a.heading, turn };
         (duration > 0.0).then_some(step)
     }
 
     /// Agreement of heading and direction of motion in this step, weighted by its distance. Backward motion counts like forward motion.
     fn agreement(&self, heading: f64) -> f64 {
-        self.distance * (2.0 * (self.way - heading)).cos()
+        self.distance * (2.0 * (self.length - heading)).cos()
     }
 }
 
@@ -79,10 +79,10 @@ fn wrong_headings(rows: &[(Stamp, OdometryRow)], steps: &[Step]) -> Option<Strin
 
 /// Whether the direction of motion agrees with headings in degrees, and not with headings in radians.
 fn follows_way_in_degrees(steps: &[Step]) -> bool {
-    let way: f64 = steps.iter().map(|step| step.distance).sum();
+    let length: f64 = steps.iter().map(|step| step.distance).sum();
     let as_radians: f64 = steps.iter().map(|step| step.agreement(step.heading)).sum();
     let as_degrees: f64 = steps.iter().map(|step| step.agreement(step.heading.to_radians())).sum();
-    way > 0.0 && as_degrees > MIN_AGREEMENT * way && as_radians < MAX_CONTRADICTION * way
+    length > 0.0 && as_degrees > MIN_AGREEMENT * length && as_radians < MAX_CONTRADICTION * length
 }
 
 /// The median of the rates above `limit`, if they are too many for jumps.

@@ -173,9 +173,12 @@ mod tests {
         let read = parse("1700000000200 2 0 0 0 0 0 1\n1700000000100 1 0 0 0 0 0 1\n").unwrap();
         assert_eq!(read.poses.iter().map(|(_, pose)| pose.translation.x).collect::<Vec<_>>(), [1.0, 2.0]);
         assert_eq!(read.poses[1].0.to_string(), "1700000000.200000000");
-        let said = lines(&read.warnings);
-        assert!(said.contains("are taken as milliseconds, expected seconds: a.txt"), "{said}");
-        assert!(said.contains("timestamps go back 1 times in 2 rows, which are sorted: a.txt"), "{said}");
+        let message = lines(&read.warnings);
+        assert!(message.contains("are taken as milliseconds, expected seconds: a.txt"), "{message}");
+        assert!(
+            message.contains("timestamps go back 1 times in 2 rows, which are sorted: a.txt"),
+            "{message}"
+        );
     }
 
     #[test]
@@ -223,10 +226,10 @@ mod tests {
         );
         std::fs::write(dir.path().join("times.txt"), "0.0\n").unwrap();
         let short = read_trajectory_file(&path).unwrap();
-        let said = lines(&short.warnings);
+        let message = lines(&short.warnings);
         assert!(
-            short.is_indexed && said.lines().count() == 1 && said.contains("1 times for 2 poses"),
-            "{said}"
+            short.is_indexed && message.lines().count() == 1 && message.contains("1 times for 2 poses"),
+            "{message}"
         );
         std::fs::write(dir.path().join("times.txt"), "0.0\n0.25\n").unwrap();
         let read = read_trajectory_file(&path).unwrap();

@@ -76,7 +76,7 @@ impl<'f> TumWriter<'f> {
         let titled = |folder| format!("# timestamp filename\n{}", list(&self.frames, &[folder]));
         write("rgb.txt", titled("rgb"))?;
         write("depth.txt", titled("depth"))?;
-        write("associations.txt", list(&self.frames, &["rgb", "depth"]))?; // ORB-SLAM knows no comments there
+        write("associations.txt", list(&self.frames, &["rgb", "depth"]))?; // ORB-SLAM does not accept comments in this file
         if !self.ground_truth.is_empty() {
             write("groundtruth.txt", trajectory_text(&by_stamp(self.ground_truth)))?;
         }

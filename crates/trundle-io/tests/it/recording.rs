@@ -258,7 +258,7 @@ fn events_that_cannot_be_recorded_are_refused() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_full_disk_is_said() {
+fn a_full_disk_is_reported() {
     let mut recorder = Recorder::create(Path::new("/dev/full")).unwrap();
     let image = EncodedEvent::encode(&SensorEvent::Rgbd(frame(stamp(0), 64, 48))).unwrap();
     let result =

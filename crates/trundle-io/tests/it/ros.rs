@@ -164,7 +164,7 @@ fn a_laser_is_upside_down_where_that_is_given() {
 }
 
 #[test]
-fn scans_that_met_nothing_are_counted_and_limits_in_the_wrong_order_refused() {
+fn scans_without_returns_are_counted_and_limits_in_the_wrong_order_refused() {
     let infinite = scan(1.0, &[f32::INFINITY; 5]);
     let log = log_of(&[odometry(1.0, 0.0), infinite, scan(1.0, &[1.0; 5])], "cdr").unwrap();
     assert_eq!((log.scans.len(), log.scans_without_return(), log.bad_ranges), (2, 1, 0));

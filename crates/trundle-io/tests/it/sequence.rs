@@ -94,8 +94,11 @@ fn wrong_folders_are_one_clear_sentence() {
         "DIR/depth.txt, line 3: timestamp is 'half', expected a decimal number of seconds"
     );
     fs::write(dir.path().join("depth.txt"), "1 a.png\n0.5 b.png").unwrap();
-    let said: Vec<String> = open(dir.path()).unwrap().warnings().iter().map(ToString::to_string).collect();
-    assert!(said.len() == 1 && said[0].starts_with("timestamps go back 1 times in 2 rows"), "{said:?}");
+    let message: Vec<String> = open(dir.path()).unwrap().warnings().iter().map(ToString::to_string).collect();
+    assert!(
+        message.len() == 1 && message[0].starts_with("timestamps go back 1 times in 2 rows"),
+        "{message:?}"
+    );
     let error = open(&dir.path().join("nowhere")).unwrap_err().to_string();
     assert!(error.starts_with("cannot read ") && error.ends_with("nowhere: it does not exist"), "{error}");
     let error = open(&dir.path().join("rgb.txt")).unwrap_err().to_string();
@@ -114,9 +117,15 @@ fn a_wrong_ground_truth_is_warned_of_and_a_wrong_odometry_refused() {
     let dir = folder();
     fs::write(dir.path().join("groundtruth.txt"), "# t\n1 2 3\n").unwrap();
     let sequence = open(dir.path()).unwrap();
-    let said: Vec<String> = sequence.warnings().iter().map(ToString::to_string).collect();
-    assert!(said.len() == 1 && said[0].starts_with("row left out, 3 fields, expected 8"), "{said:?}");
-    assert!(said[0].ends_with("groundtruth.txt, line 2") && sequence.ground_truth().is_none(), "{said:?}");
+    let message: Vec<String> = sequence.warnings().iter().map(ToString::to_string).collect();
+    assert!(
+        message.len() == 1 && message[0].starts_with("row left out, 3 fields, expected 8"),
+        "{message:?}"
+    );
+    assert!(
+        message[0].ends_with("groundtruth.txt, line 2") && sequence.ground_truth().is_none(),
+        "{message:?}"
+    );
     fs::remove_file(dir.path().join("groundtruth.txt")).unwrap();
     fs::write(dir.path().join("odometry.txt"), "1 2 3 x\n").unwrap();
     assert_eq!(problem(&dir), "DIR/odometry.txt, line 1: theta is 'x', expected a finite number");

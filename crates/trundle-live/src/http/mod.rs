@@ -47,14 +47,14 @@ async fn open_link(
         Ok(upgrade) => upgrade,
         Err(rejection) => return rejection.into_response(),
     };
-    let Some(id) = state.roster().enter() else {
+    let Some(id) = state.viewer_list().enter() else {
         return (StatusCode::SERVICE_UNAVAILABLE, "too many viewers: close another page").into_response();
     };
     let failed = Arc::clone(&state);
     upgrade
         .max_message_size(MAX_MESSAGE_BYTES)
         .max_frame_size(MAX_MESSAGE_BYTES)
-        .on_failed_upgrade(move |_| _ = failed.roster().leave(id))
+        .on_failed_upgrade(move |_| _ = failed.viewer_list().leave(id))
         .on_upgrade(move |socket| viewer::serve(socket, state, id))
 }
 

@@ -16,7 +16,7 @@ use trundle_core::{DriveLimits, OccupancyGrid, Pose2, Twist2, Zone, require_in};
 use trundle_planning::{FootprintCheck, require_on_map};
 use trundle_runtime::{Mission, OperatorCommand, PoseGuess, RunSetting, Task};
 
-/// Most goals of one request. Source: ours.
+/// Maximum number of goals of one request. Source: ours.
 const MAX_GOALS: usize = 50;
 /// Standard deviation of a position that a person points at \[m\]. Source: ours; a finger on a map of 10 m.
 const POINTED_POSITION_SIGMA_M: f64 = 0.3;
@@ -52,7 +52,7 @@ impl RunSteering {
     ///
     /// # Errors
     /// When the robot cannot carry the request out: a goal in a wall, a number out of range, a run that is over.
-    pub fn obey(&self, request: &Request) -> Result<(), CommandRefusal> {
+    pub fn execute(&self, request: &Request) -> Result<(), CommandRefusal> {
         let is_for_hand = matches!(request, Request::Drive { .. } | Request::Stop { .. });
         if !is_for_hand {
             self.require_robot()?;
@@ -118,7 +118,7 @@ impl RunSteering {
         if goals.is_empty() || goals.len() > MAX_GOALS {
             return Err(CommandRefusal::of(format!("{} goals: expected 1 to {MAX_GOALS}", goals.len())));
         }
-        let view = self.operator.glance();
+        let view = self.operator.peek();
         let map = view.as_ref().and_then(|view| view.map.as_deref());
         let annotations = self.operator.annotations();
         for (number, goal) in goals.iter().enumerate() {
@@ -135,7 +135,7 @@ impl RunSteering {
     /// A zone outside the map is assumed to be a mistake.
     fn set_zone(&self, zone: &Zone) -> Result<(), CommandRefusal> {
         let zone = zone.clone().validated()?;
-        let view = self.operator.glance();
+        let view = self.operator.peek();
         let map = view.as_ref().and_then(|view| view.map.as_deref());
         map.map_or(Ok(()), |map| require_on_map(&zone, map.grid.geometry()))?;
         self.edit(&AnnotationEdit::SetZone(zone))
@@ -233,12 +233,12 @@ mod tests {
     #[test]
     fn goals_are_checked_before_the_robot_sees_them() {
         let (steering, _link) = steering();
-        assert_eq!(steering.obey(&go(1.0)), Ok(()));
-        let refusal = steering.obey(&go(1e9)).unwrap_err();
+        assert_eq!(steering.execute(&go(1.0)), Ok(()));
+        let refusal = steering.execute(&go(1e9)).unwrap_err();
         assert_eq!(refusal.goal, Some(0));
-        assert!(steering.obey(&Request::Go { id: 1, goals: vec![], append: false }).is_err());
+        assert!(steering.execute(&Request::Go { id: 1, goals: vec![], append: false }).is_err());
         let many = vec![Goal { x: 0.0, y: 0.0, theta: 0.0 }; 1000];
-        assert!(steering.obey(&Request::Go { id: 1, goals: many, append: true }).is_err());
+        assert!(steering.execute(&Request::Go { id: 1, goals: many, append: true }).is_err());
     }
 
     #[test]
@@ -250,12 +250,13 @@ mod tests {
             kind: trundle_core::ZoneKind::Slow(0.2),
             outline: outline.to_vec(),
         };
-        let set = |zone| steering.obey(&Request::SetZone { id: 1, zone });
+        let set = |zone| steering.execute(&Request::SetZone { id: 1, zone });
         let bow = set(zone(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]])).unwrap_err().text;
         assert!(bow.contains("crossed by itself"), "{bow}");
         assert!(set(zone(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])).is_ok());
-        assert!(steering.obey(&Request::RemoveZone { id: 1, number: 7 }).is_err());
-        let change = |key: &str, value| steering.obey(&Request::Change { id: 1, key: key.to_owned(), value });
+        assert!(steering.execute(&Request::RemoveZone { id: 1, number: 7 }).is_err());
+        let change =
+            |key: &str, value| steering.execute(&Request::Change { id: 1, key: key.to_owned(), value });
         let fast = change("limits.v_m_s", 5.0).unwrap_err().text;
         assert_eq!(fast, format!("limits.v_m_s is 5 m/s, expected 0.05 to {}", DriveLimits::KOBUKI.v));
         assert!(change("drive.wheel_radius_m", 1.0).unwrap_err().text.contains("cannot change"));
@@ -267,7 +268,7 @@ mod tests {
     fn a_run_that_is_over_is_named() {
         let (steering, link) = steering();
         drop(link);
-        assert_eq!(steering.obey(&Request::Stop { id: 1 }).unwrap_err().text, "the run is over");
+        assert_eq!(steering.execute(&Request::Stop { id: 1 }).unwrap_err().text, "the run is over");
         steering.end_of_hand();
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::access::Access;
 use crate::page_state::PageState;
-use crate::roster::ViewerId;
+use crate::viewer_list::ViewerId;
 use crate::wire::{Reply, Request, WIRE_VERSION, Welcome};
 use axum::extract::ws::{CloseFrame, Message, WebSocket};
 use std::time::Duration;
@@ -32,7 +32,7 @@ pub async fn receive(socket: &mut WebSocket, state: &PageState, id: ViewerId) ->
     if version != WIRE_VERSION {
         return refuse(socket, OTHER_VERSION, "the page is of another version: load it anew").await;
     }
-    state.roster().rename(id, &name);
+    state.viewer_list().rename(id, &name);
     let facts = &state.facts;
     let welcome = Welcome {
         drives: access == Access::Drive && state.is_steered,

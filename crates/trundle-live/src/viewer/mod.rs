@@ -8,7 +8,7 @@ mod requests;
 mod updates;
 
 use crate::page_state::PageState;
-use crate::roster::ViewerId;
+use crate::viewer_list::ViewerId;
 use axum::extract::ws::WebSocket;
 use futures_util::StreamExt;
 use outbox::{Close, Outbox};
@@ -34,7 +34,7 @@ pub async fn serve(mut socket: WebSocket, state: Arc<PageState>, id: ViewerId) {
         tracing::debug!("live page: viewer {id}: {}", close.reason());
         outbox.close(close).await;
     }
-    if state.roster().leave(id) {
+    if state.viewer_list().leave(id) {
         state.steering.end_of_hand();
     }
 }

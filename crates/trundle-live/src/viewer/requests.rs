@@ -4,8 +4,8 @@ use super::progress::ViewProgress;
 use super::rate_limit::RateLimit;
 use crate::access::Access;
 use crate::page_state::PageState;
-use crate::roster::ViewerId;
 use crate::steering::CommandRefusal;
+use crate::viewer_list::ViewerId;
 use crate::wire::{Reply, Request};
 use axum::extract::ws::{Message, WebSocket};
 use futures_util::StreamExt;
@@ -89,7 +89,7 @@ impl Viewer<'_> {
             }
             _ => {}
         }
-        answer(request.id(), self.obey(request))
+        answer(request.id(), self.execute(request))
     }
 
     fn may_load(&self) -> Result<OwnedSemaphorePermit, CommandRefusal> {
@@ -132,37 +132,37 @@ impl Viewer<'_> {
         }
         if self.access != Access::Drive {
             return Err(CommandRefusal::of(
-                "This link only looks. The program prints another link that drives.",
+                "This link is for viewing only. The program prints another link for driving.",
             ));
         }
         Ok(())
     }
 
-    fn obey(&self, request: &Request) -> Result<(), CommandRefusal> {
+    fn execute(&self, request: &Request) -> Result<(), CommandRefusal> {
         let state = self.state;
         self.require_drive()?;
         match request {
             // Every viewer with driving permission may stop.
             Request::Stop { .. } => {}
             Request::TakeWheel { .. } => {
-                state.roster().take(self.id);
+                state.viewer_list().take(self.id);
                 return Ok(());
             }
             Request::LeaveWheel { .. } => {
-                if state.roster().release(self.id) {
+                if state.viewer_list().release(self.id) {
                     state.steering.end_of_hand();
                 }
                 return Ok(());
             }
             _ => require_wheel(state, self.id)?,
         }
-        state.steering.obey(request)
+        state.steering.execute(request)
     }
 }
 
 /// Gives free control to a viewer, or refuses if another viewer is in control.
 fn require_wheel(state: &PageState, id: ViewerId) -> Result<(), CommandRefusal> {
-    let free = state.roster().require(id);
+    let free = state.viewer_list().require(id);
     free.map_err(|holder| CommandRefusal::of(format!("{holder} holds the wheel. Take it over first.")))
 }
 

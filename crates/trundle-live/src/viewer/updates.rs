@@ -3,7 +3,7 @@
 use super::outbox::Outbox;
 use super::progress::ViewProgress;
 use crate::page_state::PageState;
-use crate::roster::ViewerId;
+use crate::viewer_list::ViewerId;
 use crate::wire::{
     Reply, SeriesText, SettingText, StateMessage, TileCursor, WheelText, depth_message, features_message,
     image_message, path_message, scan_message, trail_message, visual_map_message,
@@ -35,12 +35,12 @@ pub async fn send(
     progress: &ViewProgress,
     mut answers: Receiver<Reply>,
 ) -> &'static str {
-    const GONE: &str = "the viewer takes no messages";
+    const VIEWER_CLOSED: &str = "the viewer takes no messages";
     let mut updates = Updates::new(id);
     let mut ticks = interval(VIEW_PERIOD);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
     if !updates.begin(outbox, state).await {
-        return GONE;
+        return VIEWER_CLOSED;
     }
     loop {
         let is_taken = tokio::select! {
@@ -49,7 +49,7 @@ pub async fn send(
             _ = ticks.tick() => updates.send(outbox, state, progress).await,
         };
         if !is_taken {
-            return GONE;
+            return VIEWER_CLOSED;
         }
     }
 }
@@ -169,9 +169,9 @@ impl Updates {
     }
 
     fn state_message(&self, view: &RunView, state: &PageState) -> StateMessage {
-        let roster = state.roster();
-        let wheel = roster.holder().map(|(id, name)| WheelText { name, is_you: id == self.id });
-        StateMessage::of(view, self.batch, wheel, roster.count())
+        let viewer_list = state.viewer_list();
+        let wheel = viewer_list.holder().map(|(id, name)| WheelText { name, is_you: id == self.id });
+        StateMessage::of(view, self.batch, wheel, viewer_list.count())
     }
 
     /// The binary messages with the parts that the viewer lacks.

@@ -19,7 +19,7 @@ use trundle_core::{Cell, OccupancyGrid, Vector2};
 const TILE_CELLS: i64 = 64;
 /// Bytes of a tile.
 const TILE_BYTES: usize = (TILE_CELLS * TILE_CELLS / 4) as usize;
-/// Most tiles of one message: 25 kB, which a network of 40 kB/s takes in 0.6 s. Source: ours.
+/// Maximum number of tiles of one message: 25 kB, which a network of 40 kB/s takes in 0.6 s. Source: ours.
 const MAX_TILES_OF_MESSAGE: usize = 24;
 /// Cells from the origin beyond which no tile is made: the page counts them in 32 bits. Source: ours.
 const MAX_CELLS_FROM_ORIGIN: f64 = 1e9;

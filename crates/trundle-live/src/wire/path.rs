@@ -4,7 +4,7 @@
 use super::Kind;
 use trundle_core::{Pose2, Trajectory};
 
-/// Most points of a planned path; a longer one is thinned. Source: ours.
+/// Maximum number of points of a planned path; a longer one is thinned. Source: ours.
 const MAX_PLAN_POINTS: usize = 400;
 
 /// The message of a planned path; without points for `None`.

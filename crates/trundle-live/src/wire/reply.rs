@@ -103,7 +103,7 @@ pub struct EndedRunText {
     pub text: String,
 }
 
-/// Most ended runs that are sent: some 10 kB. Source: ours.
+/// Maximum number of ended runs that are sent: some 10 kB. Source: ours.
 const MAX_ENDED_RUNS: usize = 100;
 
 impl SeriesText {

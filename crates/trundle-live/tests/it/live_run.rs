@@ -81,8 +81,8 @@ impl LiveRun {
     /// Waits until the view satisfies `is`, at most 5 s.
     pub fn wait_for(&self, what: &str, is: impl Fn(&RunView) -> bool) {
         let start = Instant::now();
-        while !self.operator.glance().is_some_and(|view| is(&view)) {
-            let seen = self.operator.glance().map(|view| (view.state.clone(), view.hold, view.estimate.pose));
+        while !self.operator.peek().is_some_and(|view| is(&view)) {
+            let seen = self.operator.peek().map(|view| (view.state.clone(), view.hold, view.estimate.pose));
             assert!(start.elapsed() < Duration::from_secs(5), "{what}: {seen:?}");
             std::thread::sleep(Duration::from_millis(5));
         }

@@ -7,15 +7,15 @@ use std::time::{Duration, Instant};
 use trundle_live::Access;
 
 #[test]
-fn a_link_that_looks_drives_nothing() {
+fn a_link_for_viewing_does_not_drive() {
     let run = LiveRun::start();
     let mut viewer = Browser::enter(&run, Access::View, "viewer");
     for kind in ["explore", "return", "dock", "stop", "pause", "continue", "take_wheel"] {
         let refusal = viewer.ask(json!({"type": kind})).unwrap();
-        assert!(refusal.contains("only looks"), "{kind}: {refusal}");
+        assert!(refusal.contains("for viewing only"), "{kind}: {refusal}");
     }
     viewer.send(&json!({"type": "drive", "v": 1.0, "omega": 0.0}));
-    assert!(viewer.wait_for("refused")["refusal"].as_str().unwrap().contains("only looks"));
+    assert!(viewer.wait_for("refused")["refusal"].as_str().unwrap().contains("for viewing only"));
     assert!(viewer.wait_for("state")["wheel"].is_null());
 }
 
@@ -28,7 +28,7 @@ fn a_replay_takes_no_commands() {
 }
 
 #[test]
-fn one_holds_the_wheel_and_the_other_sees_who() {
+fn one_viewer_is_in_control_and_the_other_is_shown_which() {
     let run = LiveRun::start();
     let mut anna = Browser::enter(&run, Access::Drive, "Anna");
     let mut bert = Browser::enter(&run, Access::Drive, "Bert");
@@ -36,7 +36,7 @@ fn one_holds_the_wheel_and_the_other_sees_who() {
     assert_eq!(bert.ask(json!({"type": "explore"})).unwrap(), "Anna holds the wheel. Take it over first.");
     let state = std::iter::from_fn(|| Some(bert.wait_for("state"))).find(|state| !state["wheel"].is_null());
     assert_eq!(state.unwrap()["wheel"], json!({"name": "Anna", "is_you": false}));
-    assert_eq!(bert.ask(json!({"type": "stop"})), None, "whoever may drive may stop");
+    assert_eq!(bert.ask(json!({"type": "stop"})), None, "a viewer that may drive may stop");
     assert_eq!(bert.ask(json!({"type": "take_wheel"})), None);
     assert_eq!(bert.ask(json!({"type": "explore"})), None);
     assert!(anna.ask(json!({"type": "explore"})).unwrap().starts_with("Bert holds"));
@@ -59,7 +59,7 @@ fn a_viewer_that_draws_nothing_is_sent_three_views_and_the_others_go_on() {
     slow.send(&json!({"type": "seen", "batch": 3}));
     let fresh = slow.wait_for("state");
     assert_eq!(fresh["batch"], 4);
-    let (newest, shown) = (run.operator.glance().unwrap().stamp.as_secs(), fresh["time"].as_f64().unwrap());
+    let (newest, shown) = (run.operator.peek().unwrap().stamp.as_secs(), fresh["time"].as_f64().unwrap());
     assert!(newest - shown < 0.5, "the newest view, not one that waited: {newest} s, {shown} s");
 }
 

@@ -34,7 +34,7 @@ fn zones_and_places_are_drawn_changed_and_deleted_and_every_viewer_sees_them() {
         other
             .ask(json!({"type": "set_zone", "zone": zone(0, json!("area"))}))
             .unwrap()
-            .contains("only looks")
+            .contains("for viewing only")
     );
 }
 
@@ -98,7 +98,7 @@ fn a_map_of_the_folder_is_loaded_and_another_name_is_refused() {
     assert!(head.starts_with("HTTP/1.1 200") && body.contains(r#"["attic"]"#), "{head} {body}");
     assert!(fetch(run.page.address(), "GET /maps", &headers[..1]).0.starts_with("HTTP/1.1 403"));
     let mut viewer = Browser::enter(&run, Access::View, "viewer");
-    assert!(viewer.ask(json!({"type": "load_map", "name": "attic"})).unwrap().contains("only looks"));
+    assert!(viewer.ask(json!({"type": "load_map", "name": "attic"})).unwrap().contains("for viewing only"));
     let mut page = Browser::enter(&run, Access::Drive, "page");
     let refusal = page.ask(json!({"type": "load_map", "name": "../attic"})).unwrap();
     assert!(refusal.contains("no map '../attic'"), "{refusal}");

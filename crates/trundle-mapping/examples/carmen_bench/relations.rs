@@ -5,9 +5,9 @@ use trundle_core::{Pose2, Stamp, Vector2, wrap_angle};
 
 #[derive(Clone, Copy, PartialEq)]
 pub enum EntryKind {
-    /// About 1 m of way apart.
+    /// About 1 m of path apart.
     Near,
-    /// About 10 m of way apart.
+    /// About 10 m of path apart.
     Far,
     /// At the same place, at different times.
     Loop,
@@ -30,13 +30,13 @@ pub fn relations(reference: &[(Stamp, Pose2)]) -> Vec<Relation> {
         Relation { kind, from, to, relative: a.inverse() * b, poses: (i, j) }
     };
     for i in 0..reference.len() {
-        let mut way = 0.0;
+        let mut travelled = 0.0;
         let mut next = [(1.0, EntryKind::Near), (10.0, EntryKind::Far)].into_iter().peekable();
         for j in i + 1..reference.len() {
-            way += reference[j].1.distance(&reference[j - 1].1);
+            travelled += reference[j].1.distance(&reference[j - 1].1);
             while next
                 .next_if(|(length, kind)| {
-                    way >= *length && {
+                    travelled >= *length && {
                         found.push(relation(*kind, i, j));
                         true
                     }
@@ -48,13 +48,13 @@ pub fn relations(reference: &[(Stamp, Pose2)]) -> Vec<Relation> {
             }
         }
         // For each later visit of this place, after more than 40 m of path, the nearest pose.
-        let mut way = 0.0;
+        let mut travelled = 0.0;
         let mut nearest: Option<(f64, usize)> = None;
         for j in i + 1..reference.len() {
-            way += reference[j].1.distance(&reference[j - 1].1);
+            travelled += reference[j].1.distance(&reference[j - 1].1);
             let distance = reference[i].1.distance(&reference[j].1);
-            if way > 40.0 && distance < 2.0 {
-                if nearest.is_none_or(|(least, _)| distance < least) {
+            if travelled > 40.0 && distance < 2.0 {
+                if nearest.is_none_or(|(min, _)| distance < min) {
                     nearest = Some((distance, j));
                 }
             } else if let Some((_, j)) = nearest.take() {

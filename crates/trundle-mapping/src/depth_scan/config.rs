@@ -7,7 +7,7 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DepthScanConfig {
-    /// Lower edge of the height band, m above the floor, 0 to 1. Lower objects are no obstacles: the robot drives over them. Default 0.05.
+    /// Lower edge of the height band, m above the floor, 0 to 1. Lower objects are no obstacles: the robot drives over them. Default 0.05 (ours).
     pub band_low: f64,
     /// Upper edge of the height band, m above the floor, above `band_low`, to 5. Higher objects are no obstacles: the robot drives under
     /// them. Default 0.65: a Kobuki with its camera is 0.6 m high.
@@ -19,19 +19,19 @@ pub struct DepthScanConfig {
     /// Largest range of a beam over the floor, m, 0.5 to 100. A larger value maps farther with more noise. Default 6: beyond it a pixel is
     /// wider than a chair leg.
     pub max_range: f64,
-    /// Depth noise (one sigma) at the camera, m, 0 to 0.1. Default 0.003.
+    /// Depth noise (one sigma) at the camera, m, 0 to 0.1. Default 0.003 (ours).
     pub noise_base: f64,
     /// Growth of the depth noise with depth squared, m / m^2, 0 to 0.1. Default 0.0015: about the Kinects' (0.0019
     /// for the first, Khoshelham and Elberink 2012; less for the second).
     pub noise_growth: f64,
-    /// Height of the lowest obstacle above the floor, in sigmas of the depth noise, 0 to 10. A smaller value sees lower obstacles and gives
-    /// false ones. Default 3.
+    /// Height of the lowest obstacle above the floor, in sigmas of the depth noise, 0 to 10. A smaller value detects lower obstacles and gives
+    /// false ones. Default 3 (ours).
     pub floor_sigmas: f64,
     /// Largest error of the camera's tilt at which the floor is no obstacle, deg, 0 to 10. A larger value hides low obstacles far away. If
     /// a floor is fitted, the error bound of the fit applies when smaller. Default 1: a soft tyre, a hard stop.
     pub tilt_error_deg: f64,
     /// Largest tilt of a fitted floor against the mount's floor, deg, 0 (no fit) to 10. Heights are measured from the fitted floor. Default
-    /// 3.
+    /// 3 (ours).
     pub floor_fit_deg: f64,
     /// Depth below the floor from which a point is a hole, m, 0.02 to 1. The robot stops before a hole as before an obstacle. Default 0.1:
     /// a Kobuki's wheel drops 0.04.

@@ -25,16 +25,16 @@ const VIEW_RADIUS_M: f64 = 4.0;
 /// Maximum radius of a loop search \[m\]: the drift of one minute of failing odometry. Source: ours.
 pub(crate) const MAX_SEARCH_RADIUS_M: f64 = 40.0;
 
-/// The parts of the trajectory that may be near the last pose, the likeliest first. `ways` are the distances travelled up to each pose, m.
+/// The parts of the trajectory that may be near the last pose, the likeliest first. `lengths` are the distances travelled up to each pose, m.
 pub(crate) fn candidates(
     poses: &[Pose2],
-    ways: &[f64],
+    lengths: &[f64],
     reached: &[Option<RelativeUncertainty>],
 ) -> Vec<Candidate> {
     let last = poses.len() - 1;
     let mut found: Vec<Candidate> = Vec::new();
     for k in 0..last {
-        if ways[last] - ways[k] < MIN_LOOP_LENGTH_M {
+        if lengths[last] - lengths[k] < MIN_LOOP_LENGTH_M {
             break;
         }
         let Some((distance, reached)) = feasible(poses[k], poses[last], reached[k]) else { continue };

@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_many_laps_the_newest_scans_of_each_place_stay() {
+    fn after_many_laps_each_place_keeps_its_newest_scans() {
         let lap =
             |k: usize| Pose2::new(3.0 * (0.1 * k as f64).cos(), 3.0 * (0.1 * k as f64).sin(), 0.1 * k as f64);
         let poses: Vec<Pose2> = (0..6000).map(lap).collect();

@@ -52,19 +52,19 @@ impl LoopCloser {
         history: &mut ScanHistory,
         poses: &[Pose2],
     ) -> Option<LoopCorrection> {
-        let ways: Vec<f64> = std::iter::once(0.0)
-            .chain(poses.windows(2).scan(0.0, |way, pair| {
-                *way += pair[0].distance(&pair[1]);
-                Some(*way)
+        let distances: Vec<f64> = std::iter::once(0.0)
+            .chain(poses.windows(2).scan(0.0, |distance, pair| {
+                *distance += pair[0].distance(&pair[1]);
+                Some(*distance)
             }))
             .collect();
-        let way = *ways.last()?;
+        let distance = *distances.last()?;
         let constraints = history.constraints(poses);
         let last = poses.len() - 1;
         let reached = reach(poses, &constraints, last);
-        let found = candidates(poses, &ways, &reached);
+        let found = candidates(poses, &distances, &reached);
         let own: Vec<usize> = {
-            let from = ways.partition_point(|w| *w < way - SUBMAP_LENGTH_M);
+            let from = distances.partition_point(|w| *w < distance - SUBMAP_LENGTH_M);
             thinned(poses, (from..=last).rev(), 0.3, MAX_SUBMAP_SCANS)
         };
         let now = poses[last];
@@ -102,8 +102,8 @@ impl LoopCloser {
         let (map, cloud) = self.submaps.draw(models, history, &which, |k| poses[k]);
         let per_metre = 1.0 / config.map.resolution;
         let scale = Matrix3::from_diagonal(&Vector3::new(per_metre, per_metre, 1.0));
-        let least = Matrix3::from_diagonal(&Vector3::new(4.0, 4.0, 0.02 * 0.02));
-        let covariance = scale * candidate.reached.covariance * scale + least;
+        let min = Matrix3::from_diagonal(&Vector3::new(4.0, 4.0, 0.02 * 0.02));
+        let covariance = scale * candidate.reached.covariance * scale + min;
         let reach = |k: usize| (3.0 * covariance[(k, k)].sqrt()).clamp(10.0, MAX_SEARCH_RADIUS_M * per_metre);
         let turn = (3.0 * covariance[(2, 2)].sqrt()).clamp(0.05, 0.8);
         let finder = CloudMatcher { config, likelihood: &models.likelihood, cloud: own_cloud };
@@ -136,8 +136,8 @@ impl LoopCloser {
             let then = poses[other.from as usize] * other.from_to;
             let step = poses[other.to as usize].inverse() * poses[last];
             let off = (then * step).inverse() * now;
-            let way = step.position().norm();
-            off.position().norm() < 0.2 + 0.04 * way && off.theta.abs() < 0.05
+            let distance = step.position().norm();
+            off.position().norm() < 0.2 + 0.04 * distance && off.theta.abs() < 0.05
         };
         if !known && !self.pending.iter().any(agrees) {
             self.pending.push(constraint);

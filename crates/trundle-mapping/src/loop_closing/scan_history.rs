@@ -184,31 +184,31 @@ mod tests {
     fn thinning_keeps_the_path_and_its_loops() {
         let step = Pose2::new(0.5, 0.1, 0.2);
         let mut history = ScanHistory::default();
-        let mut way = vec![(Stamp::default(), Pose2::IDENTITY)];
+        let mut path = vec![(Stamp::default(), Pose2::IDENTITY)];
         for k in 0..41 {
             history.push(
                 StoredScan::new(&ParticleConfig::default(), &ScanPoints::default()),
                 Matrix3::identity() * 1e-4,
             );
             if k > 0 {
-                way.push((Stamp::from_nanos(k), way.last().unwrap().1 * step));
+                path.push((Stamp::from_nanos(k), path.last().unwrap().1 * step));
             }
         }
         let constraint = |from: u32, to: u32| Constraint {
             from,
             to,
-            from_to: way[from as usize].1.inverse() * way[to as usize].1,
+            from_to: path[from as usize].1.inverse() * path[to as usize].1,
             covariance: Matrix3::identity() * 1e-4,
         };
         history.loops = vec![constraint(3, 37), constraint(4, 15), constraint(8, 40)];
-        let mut thinned = way.clone();
+        let mut thinned = path.clone();
         history.thin(&mut thinned, &every_second(41, 20));
         assert_eq!((history.scans.len(), thinned.len(), history.measured.len()), (32, 32, 32));
-        assert_eq!(thinned[0], way[0]);
+        assert_eq!(thinned[0], path[0]);
         let all = history.with_left_out(&thinned, 0);
-        assert!(all.iter().zip(&way).all(|(a, b)| a.0 == b.0 && a.1.distance(&b.1) < 1e-9));
-        assert_eq!(all.len(), way.len());
-        assert_eq!(thinned.last(), way.last());
+        assert!(all.iter().zip(&path).all(|(a, b)| a.0 == b.0 && a.1.distance(&b.1) < 1e-9));
+        assert_eq!(all.len(), path.len());
+        assert_eq!(thinned.last(), path.last());
         let poses: Vec<Pose2> = thinned.iter().map(|(_, pose)| *pose).collect();
         for constraint in history.constraints(&poses) {
             assert!(

@@ -140,7 +140,7 @@ mod tests {
     use trundle_core::{Beam, FreeSpan, Scan, ScanParts, Stamp, Vector2};
 
     #[test]
-    fn packing_keeps_what_a_scan_says_of_its_beams() {
+    fn packing_keeps_all_data_of_the_beams() {
         let beams =
             vec![Beam::Hit { range: 2.0 }, Beam::Unseen, Beam::Free { range: 3.0 }, Beam::Hit { range: 1.0 }];
         let span = |beam, from, to| FreeSpan { beam, from, to };

@@ -47,7 +47,7 @@ pub(crate) fn thinned(
     poses: &[Pose2],
     range: impl Iterator<Item = usize>,
     apart: f64,
-    most: usize,
+    max: usize,
 ) -> Vec<usize> {
     let mut kept: Vec<usize> = Vec::new();
     for k in range {
@@ -57,7 +57,7 @@ pub(crate) fn thinned(
         });
         if news {
             kept.push(k);
-            if kept.len() == most {
+            if kept.len() == max {
                 break;
             }
         }

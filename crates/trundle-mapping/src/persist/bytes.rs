@@ -88,10 +88,10 @@ impl<'a> Reader<'a> {
         Ok(value)
     }
 
-    /// Reads the number of following elements of at least `least` bytes; the rest of the bytes must be able to hold them.
-    pub(crate) fn count(&mut self, least: usize) -> Read<usize> {
+    /// Reads the number of following elements of at least `min` bytes; the rest of the bytes must be able to hold them.
+    pub(crate) fn count(&mut self, min: usize) -> Read<usize> {
         let count = self.u32()? as usize;
-        if count.saturating_mul(least) > self.rest.len() {
+        if count.saturating_mul(min) > self.rest.len() {
             return Err(FilterFileError::Cut { within: self.within });
         }
         Ok(count)

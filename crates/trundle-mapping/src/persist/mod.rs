@@ -110,14 +110,14 @@ impl ParticleMapper {
         body.within = "particles";
         mapper.seed = body.u64()?;
         mapper.updates = body.u64()?;
-        mapper.expected_log_likelihood = body.f64("the expected_log_likelihood likelihood")?;
-        let trust = [(); 6].map(|()| body.f64("what is known of the odometry"));
+        mapper.expected_log_likelihood = body.f64("the expected log-likelihood")?;
+        let trust = [(); 6].map(|()| body.f64("state of the odometry"));
         let [a, b, c, d, e, f] = trust;
         mapper.odometry.noise = OdometryNoise::from_numbers([a?, b?, c?, d?, e?, f?]);
-        let bias = [(); 7].map(|()| body.f64("what the odometry has wrong"));
+        let bias = [(); 7].map(|()| body.f64("bias of the odometry"));
         let [a, b, c, d, e, f, g] = bias;
         mapper.odometry.bias = OdometryBias::from_numbers([a?, b?, c?, d?, e?, f?, g?]);
-        mapper.loops.loop_closer.driven = body.f64("the way since the last look")?;
+        mapper.loops.loop_closer.driven = body.f64("the distance since the last search for loops")?;
         mapper.set.first_pose_of_run = body.u32()? as usize;
         let known = body.u8()? == 1;
         let last = LastScan {
@@ -285,15 +285,15 @@ fn write_redraw(out: &mut Writer, redraw: Option<&MapRedraw>) {
 }
 
 fn read_redraw(bytes: &mut Reader<'_>, poses: usize, map: TileMap) -> Result<MapRedraw, FilterFileError> {
-    bytes.within = "bent way";
-    let farthest = bytes.f64("how far a loop bent the way")?;
+    bytes.within = "corrected trajectory";
+    let farthest = bytes.f64("the correction of a loop")?;
     let drawn = bytes.u32()? as usize;
     let count = bytes.count(24)?;
-    bytes.require((1..=poses).contains(&count) && drawn <= count, "the length of the bent way")?;
+    bytes.require((1..=poses).contains(&count) && drawn <= count, "the number of corrected poses")?;
     let mut redraw = MapRedraw::default();
     (redraw.farthest, redraw.drawn, redraw.map) = (farthest, drawn, map);
     for _ in 0..count {
-        redraw.poses.push(bytes.pose("a pose of the bent way")?);
+        redraw.poses.push(bytes.pose("a corrected pose")?);
     }
     Ok(redraw)
 }

@@ -55,8 +55,8 @@ impl RelativeUncertainty {
     }
 
     fn through(&self, here: Pose2, there: Pose2, constraint: &Constraint, forward: bool) -> Self {
-        let way = there.position() - here.position();
-        let lever = Matrix3::new(1.0, 0.0, -way.y, 0.0, 1.0, way.x, 0.0, 0.0, 1.0);
+        let offset = there.position() - here.position();
+        let lever = Matrix3::new(1.0, 0.0, -offset.y, 0.0, 1.0, offset.x, 0.0, 0.0, 1.0);
         // The covariance of the measurement is a perturbation at its second pose.
         let at = if forward { there } else { here };
         let (s, c) = at.theta.sin_cos();
@@ -74,7 +74,7 @@ impl RelativeUncertainty {
         }
         Self {
             covariance: lever * self.covariance * lever.transpose() + noise,
-            path_length: self.path_length + way.norm(),
+            path_length: self.path_length + offset.norm(),
         }
     }
 }

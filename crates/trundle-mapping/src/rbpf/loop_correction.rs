@@ -201,16 +201,16 @@ mod tests {
         for scans in [40, 400] {
             let ((mut sliced, mut set), (mut once, mut other)) =
                 (corrected(&models, scans), corrected(&models, scans));
-            let (mut most, mut slices, mut all) = (0, 0, 0);
+            let (mut max, mut slices, mut all) = (0, 0, 0);
             loop {
                 let (cells, done) = sliced.advance_redraw(&models, &mut set, BUDGET);
-                (most, slices, all) = (most.max(cells), slices + 1, all + cells);
+                (max, slices, all) = (max.max(cells), slices + 1, all + cells);
                 if done.is_some() {
                     break;
                 }
             }
             once.finish(&models, &mut other);
-            assert!(most < BUDGET + 5_000, "{most} cells in one step");
+            assert!(max < BUDGET + 5_000, "{max} cells in one step");
             assert!(slices >= all / (BUDGET + 5_000), "{slices} steps");
             assert!(once.redraw.is_none());
             let mut changed = 0;

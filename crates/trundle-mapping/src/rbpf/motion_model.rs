@@ -8,10 +8,10 @@ use trundle_core::Pose2;
 ///
 /// The error of the distance acts along x. It also acts along y, since a turn during the step moves the end sideways by half of the turn.
 pub(crate) fn motion_covariance(config: &MotionConfig, motion: Pose2) -> Matrix3<f64> {
-    let (way, turn) = (motion.position().norm(), motion.theta.abs());
-    let shift = config.min_shift + config.shift_per_metre * way + config.shift_per_radian * turn;
-    let heading = config.min_turn + config.turn_per_metre * way + config.turn_per_radian * turn;
-    let aside = 0.5 * shift + 0.5 * way * heading;
+    let (distance, turn) = (motion.position().norm(), motion.theta.abs());
+    let shift = config.min_shift + config.shift_per_metre * distance + config.shift_per_radian * turn;
+    let heading = config.min_turn + config.turn_per_metre * distance + config.turn_per_radian * turn;
+    let aside = 0.5 * shift + 0.5 * distance * heading;
     Matrix3::from_diagonal(&nalgebra::Vector3::new(shift * shift, aside * aside, heading * heading))
 }
 

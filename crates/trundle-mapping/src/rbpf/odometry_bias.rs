@@ -15,7 +15,7 @@ pub(crate) struct OdometryBias {
     /// Normal equations of (a, b): upper triangle, right side.
     turn: [f64; 5],
     /// Normal equation of c.
-    way: [f64; 2],
+    distance: [f64; 2],
 }
 
 /// Prior sigma of the heading bias per distance [rad/m]. Source: \[Borenstein96\], the worst wheels.
@@ -38,25 +38,30 @@ impl OdometryBias {
     /// Adds the innovation of a step. `motion` is the odometry's step (m, rad); `innovation` is against the corrected motion, `noise` holds
     /// the variances of a step's errors, both in units of `unit` m.
     pub(crate) fn learn(&mut self, motion: Pose2, innovation: &Innovation, noise: Vector3<f64>, unit: f64) {
-        let (way, forward) = (motion.position().norm(), motion.x);
+        let (distance, forward) = (motion.position().norm(), motion.x);
         let applied = self.error(motion);
         let keep = 1.0 - 1.0 / MEMORY_STEPS;
-        self.turn.iter_mut().chain(&mut self.way).for_each(|sum| *sum *= keep);
+        self.turn.iter_mut().chain(&mut self.distance).for_each(|sum| *sum *= keep);
         // An error beyond three sigmas is an outlier.
         let known = |k: usize| {
             let variance = noise[k] + innovation.open[k];
-            let most = 3.0 * variance.sqrt();
-            (innovation.off[k].clamp(-most, most), 1.0 / variance)
+            let max = 3.0 * variance.sqrt();
+            (innovation.off[k].clamp(-max, max), 1.0 / variance)
         };
         let (off, weight) = known(2);
         let error = off + applied.z;
-        let parts =
-            [way * way, way * motion.theta, motion.theta * motion.theta, way * error, motion.theta * error];
+        let parts = [
+            distance * distance,
+            distance * motion.theta,
+            motion.theta * motion.theta,
+            distance * error,
+            motion.theta * error,
+        ];
         self.turn.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * part);
         let (off, weight) = known(0);
         let (error, weight) = (off * unit + applied.x, weight / (unit * unit));
         let parts = [forward * forward, forward * error];
-        self.way.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * part);
+        self.distance.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * part);
     }
 
     /// The errors of a motion: x, y (m), heading.
@@ -75,19 +80,19 @@ impl OdometryBias {
     }
 
     fn stretch(&self) -> f64 {
-        self.way[1] / (self.way[0] + DISTANCE_BIAS_SIGMA_PER_M.powi(-2))
+        self.distance[1] / (self.distance[0] + DISTANCE_BIAS_SIGMA_PER_M.powi(-2))
     }
 
     /// The state as numbers, for saving.
     pub(crate) fn numbers(&self) -> [f64; 7] {
-        let ([a, b, c, d, e], [f, g]) = (self.turn, self.way);
+        let ([a, b, c, d, e], [f, g]) = (self.turn, self.distance);
         [a, b, c, d, e, f, g]
     }
 
     /// Restores the state from its numbers; impossible numbers restart the estimate.
     pub(crate) fn from_numbers([a, b, c, d, e, f, g]: [f64; 7]) -> Self {
         let fair = [a, b, c, d, e, f, g].iter().all(|v| v.is_finite()) && a >= 0.0 && c >= 0.0 && f >= 0.0;
-        if fair { Self { turn: [a, b, c, d, e], way: [f, g] } } else { Self::default() }
+        if fair { Self { turn: [a, b, c, d, e], distance: [f, g] } } else { Self::default() }
     }
 }
 
@@ -103,9 +108,9 @@ mod tests {
             let turn = [0.0, 0.2, -0.15, 0.0][i % 4];
             let motion = Pose2::new(if turn == 0.0 { 0.3 } else { 0.1 }, 0.0, turn);
             let truth = Pose2::new(motion.x * 1.02, 0.0, turn * 0.98 + 0.006 * motion.x);
-            let said = bias.corrected(motion);
+            let reported = bias.corrected(motion);
             let noise = Vector3::new(0.2, 0.2, 0.004);
-            let off = Vector3::new((truth.x - said.x) / 0.05, 0.0, truth.theta - said.theta);
+            let off = Vector3::new((truth.x - reported.x) / 0.05, 0.0, truth.theta - reported.theta);
             let off = off + noise.component_mul(&rng.normal3());
             let open = Vector3::new(0.01, 0.01, 1e-6);
             bias.learn(motion, &Innovation { off, open }, noise.component_mul(&noise), 0.05);

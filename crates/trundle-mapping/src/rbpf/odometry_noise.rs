@@ -56,8 +56,8 @@ impl OdometryNoise {
         for k in 0..3 {
             let variance = covariance[(k, k)];
             let open = step.open[k] / variance;
-            let most = MAX_ERROR_SIGMAS * MAX_ERROR_SIGMAS * (1.0 + open);
-            let error = (step.off[k] * step.off[k] / variance).min(most) - open;
+            let max = MAX_ERROR_SIGMAS * MAX_ERROR_SIGMAS * (1.0 + open);
+            let error = (step.off[k] * step.off[k] / variance).min(max) - open;
             // A match with a larger variance than the odometry's has little weight.
             let weight = (1.0 + open).powi(-2);
             let moments = if k < 2 { &mut self.shift } else { &mut self.turn };

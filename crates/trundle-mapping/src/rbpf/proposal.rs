@@ -173,10 +173,10 @@ impl Proposer<'_> {
         // An outlier point scores as a point on unknown ground.
         let unseen =
             0.5 * self.config.outliers.ln() * self.points.points.len() as f64 / self.config.correlation;
-        let least = (needed - unseen).max(0.0);
+        let min = (needed - unseen).max(0.0);
         let (mut places, apart) = (Vec::new(), (2.0 * MIN_START_DISTANCE_CELLS, 0.2));
         while places.len() < 2
-            && let Some(place) = pyramid.search(&query, &places, (apart, least), &LookupBudget::unlimited())
+            && let Some(place) = pyramid.search(&query, &places, (apart, min), &LookupBudget::unlimited())
         {
             places.push(place);
         }
@@ -322,8 +322,8 @@ impl Proposer<'_> {
         let odometry_covariance =
             odometry.try_inverse().expect("invariant: the odometry's covariance exists");
         let covariance = held * covariance * held + free * odometry_covariance * free;
-        let least = shape.inverse() * MIN_COVARIANCE_FRACTION;
-        let covariance = covariance + least;
+        let min = shape.inverse() * MIN_COVARIANCE_FRACTION;
+        let covariance = covariance + min;
         let draw = Cholesky::new(covariance).expect("invariant: a sum with a positive matrix").l();
         let to_pose = directions.pose_from_y;
         let pose = moved(mean + draw * rng.normal3());

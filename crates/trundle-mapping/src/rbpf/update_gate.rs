@@ -35,8 +35,8 @@ pub(crate) struct LastScan {
 impl LastScan {
     /// Whether `there` is too far for a robot of `jump` m/s.
     fn is_out_of_reach(&self, there: &Self, jump: f64) -> bool {
-        let way = self.odom_from_base.distance(&there.odom_from_base);
-        way > jump * (there.stamp - self.stamp).max(1.0)
+        let distance = self.odom_from_base.distance(&there.odom_from_base);
+        distance > jump * (there.stamp - self.stamp).max(1.0)
     }
 }
 
@@ -119,8 +119,8 @@ impl UpdateGate {
         if !last.is_out_of_reach(&now, jump) {
             return false;
         }
-        let said = doubted.filter(|(wild, _)| !wild.is_out_of_reach(&now, jump));
-        let times = 1 + said.map_or(0, |(_, times)| times);
+        let reported = doubted.filter(|(wild, _)| !wild.is_out_of_reach(&now, jump));
+        let times = 1 + reported.map_or(0, |(_, times)| times);
         self.doubted = (times < MIN_AGREEING_POSES).then_some((now, times));
         times < MIN_AGREEING_POSES
     }

@@ -142,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_the_older_half_every_second_of_each_kind_goes_and_no_touch() {
+    fn every_second_entry_of_the_older_half_is_dropped_and_no_touch() {
         let kinds = |i: usize| match i % 3 {
             0 => EntryData::FreeDisc { radius: i as f64 },
             1 => EntryData::FreeDisc { radius: -(i as f64) },

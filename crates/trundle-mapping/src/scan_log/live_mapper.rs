@@ -246,7 +246,7 @@ impl LiveMapper {
     fn redraw_from(&mut self, first: usize) {
         // A redraw that has not reached the first moved entry continues.
         if let Some(redrawing) = self.redrawing.as_mut().filter(|redrawing| redrawing.drawn <= first) {
-            debug_assert!(redrawing.drawn <= self.kept.len(), "what was drawn was kept");
+            debug_assert!(redrawing.drawn <= self.kept.len(), "the drawn cells are kept");
             return;
         }
         self.snapshots.retain(|snapshot| snapshot.drawn <= first);

@@ -51,21 +51,21 @@ impl CloudMatcher<'_> {
         guess: Pose2,
         covariance: &Matrix3<f64>,
         (reach, turn_reach): ((f64, f64), f64),
-        most: usize,
+        max: usize,
     ) -> Vec<CloudMatch> {
         let Some(pyramid) = Pyramid::new(map) else { return Vec::new() };
         let all = LookupBudget::unlimited();
-        self.find_in((&pyramid, map), guess, covariance, (reach, turn_reach), (most, &all))
+        self.find_in((&pyramid, map), guess, covariance, (reach, turn_reach), (max, &all))
     }
 
-    /// At most `most` matches of the cloud in a map with a pyramid, within a budget.
+    /// At most `max` matches of the cloud in a map with a pyramid, within a budget.
     pub(crate) fn find_in(
         &self,
         (pyramid, map): (&Pyramid, &TileMap),
         guess: Pose2,
         covariance: &Matrix3<f64>,
         (reach, turn_reach): ((f64, f64), f64),
-        (most, budget): (usize, &LookupBudget),
+        (max, budget): (usize, &LookupBudget),
     ) -> Vec<CloudMatch> {
         let every = self.cloud.points.len().div_ceil(MAX_SEARCH_POINTS).max(1);
         let points: Vec<_> = self.cloud.points.iter().step_by(every).map(|p| (p.x, p.y)).collect();
@@ -82,11 +82,11 @@ impl CloudMatcher<'_> {
             sigma: (covariance[(0, 0)].sqrt(), covariance[(1, 1)].sqrt(), covariance[(2, 2)].sqrt()),
         };
         let mut places: Vec<FoundPose> = Vec::new();
-        while places.len() < most {
+        while places.len() < max {
             // A place below half of the best score is no competitor.
-            let least = places.first().map_or(0.0, |best| 0.5 * best.score);
+            let min = places.first().map_or(0.0, |best| 0.5 * best.score);
             let apart = (MIN_PLACE_DISTANCE_CELLS, MIN_PLACE_TURN_RAD);
-            let Some(place) = pyramid.search(&query, &places, (apart, least), budget) else {
+            let Some(place) = pyramid.search(&query, &places, (apart, min), budget) else {
                 break;
             };
             places.push(place);

@@ -19,15 +19,15 @@ pub(crate) struct HeldDirections {
 }
 
 impl HeldDirections {
-    /// The directions at `pose`. A direction with less than the fraction `least` of the hits' information is degenerate.
-    pub(crate) fn new(shape: &ScanPoints, pose: Pose2, equations: &ScanEquations, least: f64) -> Self {
+    /// The directions at `pose`. A direction with less than the fraction `min` of the hits' information is degenerate.
+    pub(crate) fn new(shape: &ScanPoints, pose: Pose2, equations: &ScanEquations, min: f64) -> Self {
         let (s, c) = pose.theta.sin_cos();
         let at = shape.spread.centroid;
         let centroid = Vector2::new(c * at.x - s * at.y, s * at.x + c * at.y);
         let pose_from_y = shape.spread.pose_from_centroid(centroid);
         let information = pose_from_y.transpose() * equations.normal.information * pose_from_y;
         let eigen = information.symmetric_eigen();
-        let threshold = (least * equations.weight).max(1e-9);
+        let threshold = (min * equations.weight).max(1e-9);
         let (mut held, mut degenerate) = (Matrix3::zeros(), 0);
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
             if *value >= threshold {

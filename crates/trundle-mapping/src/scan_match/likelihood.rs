@@ -304,7 +304,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn vectors_say_what_plain_code_says_to_the_bit(
+        fn vector_code_gives_the_bits_of_plain_code(
             ranges in prop::collection::vec(0.3..4.0_f64, 40..100), x in 70.0..90.0_f64, theta in -3.0..3.0_f64,
         ) {
             let config = ParticleConfig::default();

@@ -39,9 +39,9 @@ impl MotionPrior {
 
     /// The prior of a robot with failed odometry: near the line from `before` to `guess`, with sigmas `shift` (cells) and `turn` (rad).
     pub(crate) fn slipped(before: Pose2, guess: Pose2, shift: f64, turn: f64) -> Self {
-        let way = (guess.position() - before.position()).norm();
+        let distance = (guess.position() - before.position()).norm();
         let turned = wrap_angle(guess.theta - before.theta).abs();
-        let (shift, turn) = (shift + 0.5 * way, turn + 0.5 * turned);
+        let (shift, turn) = (shift + 0.5 * distance, turn + 0.5 * turned);
         let sigma = Vector3::new(shift, shift, turn);
         Self::with(before.interpolate(&guess, 0.5), Matrix3::from_diagonal(&sigma.component_mul(&sigma)))
     }

@@ -7,7 +7,7 @@ use trundle_core::{Beam, Pose2, Scan, Stamp, Vector2, wrap_angle};
 pub struct Building {
     rooms: Vec<[f64; 4]>,
     /// Corners of the path.
-    way: Vec<(f64, f64)>,
+    path: Vec<(f64, f64)>,
 }
 
 /// Data of a drive: true poses, odometry and scans.
@@ -31,20 +31,20 @@ impl Building {
     /// A ladder of long corridors, as the infinite corridor of Killian Court: two loops of about 150 m, driven through twice.
     pub fn ladder() -> Self {
         let corners = [(0.0, 0.0), (50.0, 0.0), (50.0, 22.0), (0.0, 22.0)];
-        let mut it = Self { rooms: Vec::new(), way: Vec::new() };
+        let mut it = Self { rooms: Vec::new(), path: Vec::new() };
         it.corridor((0.0, 0.0), (50.0, 0.0), 2.2, 1);
         it.corridor((0.0, 22.0), (50.0, 22.0), 2.4, 2);
         for (k, x) in [0.0, 25.0, 50.0].into_iter().enumerate() {
             it.corridor((x, 0.0), (x, 22.0), 1.9 + 0.2 * k as f64, 3 + k as u64);
         }
         let [a, b, c, d] = corners;
-        it.way = vec![a, b, c, d, a, (25.0, 0.0), (25.0, 22.0), d, a, (20.0, 0.0)];
+        it.path = vec![a, b, c, d, a, (25.0, 0.0), (25.0, 22.0), d, a, (20.0, 0.0)];
         it
     }
 
     /// A corridor with equal rooms on both sides, as building 79 in Freiburg: in and out of every second one, and back.
     pub fn rooms() -> Self {
-        let mut it = Self { rooms: vec![[-1.0, -1.0, 37.0, 1.0]], way: vec![(0.0, 0.0)] };
+        let mut it = Self { rooms: vec![[-1.0, -1.0, 37.0, 1.0]], path: vec![(0.0, 0.0)] };
         for k in 0..9_u64 {
             let x = 4.0 * k as f64;
             for (side, up) in [(1.0, true), (-1.0, false)] {
@@ -58,23 +58,23 @@ impl Building {
                 it.rooms[last] = [door, low, door + 0.9, high];
                 if (k % 2 == 0) == up {
                     let inside = if up { 3.2 } else { -3.2 };
-                    it.way.extend([(door + 0.45, 0.0), (door + 0.45, inside), (door + 0.45, 0.0)]);
+                    it.path.extend([(door + 0.45, 0.0), (door + 0.45, inside), (door + 0.45, 0.0)]);
                 }
             }
         }
-        it.way.extend([(36.0, 0.0), (0.0, 0.0), (20.0, 0.0)]);
+        it.path.extend([(36.0, 0.0), (0.0, 0.0), (20.0, 0.0)]);
         it
     }
 
     /// Corridors around four blocks, as the ACES building in Austin: four loops that share their sides.
     pub fn blocks() -> Self {
-        let mut it = Self { rooms: Vec::new(), way: Vec::new() };
+        let mut it = Self { rooms: Vec::new(), path: Vec::new() };
         for k in 0..3_u64 {
             let at = 18.0 * k as f64;
             it.corridor((0.0, at), (36.0, at), 2.0, 10 + k);
             it.corridor((at, 0.0), (at, 36.0), 2.0, 20 + k);
         }
-        it.way = [
+        it.path = [
             (0, 0),
             (1, 0),
             (2, 0),
@@ -155,14 +155,14 @@ impl Building {
         let mut odom = vec![Pose2::IDENTITY];
         for (i, pair) in truth.windows(2).enumerate() {
             let step = pair[0].inverse() * pair[1];
-            let (n, way) = (|k| normal(seed, 3 * i as u64 + k), step.position().norm());
-            let said = if random_share(seed ^ 77, i as u64) < 1.0 / 150.0 {
+            let (n, path) = (|k| normal(seed, 3 * i as u64 + k), step.position().norm());
+            let reported = if random_share(seed ^ 77, i as u64) < 1.0 / 150.0 {
                 Pose2::IDENTITY
             } else {
-                let turn = step.theta * 1.02 + 0.005 * way + 0.02 * way * n(0) + 0.03 * step.theta * n(1);
+                let turn = step.theta * 1.02 + 0.005 * path + 0.02 * path * n(0) + 0.03 * step.theta * n(1);
                 Pose2::new(step.x * (0.98 + 0.05 * n(2)), step.y, turn)
             };
-            odom.push(odom[i] * said);
+            odom.push(odom[i] * reported);
         }
         let scans = truth.iter().enumerate().map(|(i, pose)| self.scan(*pose, i, seed)).collect();
         Drive { truth, odom, scans }
@@ -170,7 +170,7 @@ impl Building {
 
     fn poses(&self) -> Vec<Pose2> {
         let mut poses: Vec<Pose2> = Vec::new();
-        for pair in self.way.windows(2) {
+        for pair in self.path.windows(2) {
             let (a, b) = (Vector2::new(pair[0].0, pair[0].1), Vector2::new(pair[1].0, pair[1].1));
             let heading = (b.y - a.y).atan2(b.x - a.x);
             if let Some(last) = poses.last().copied() {

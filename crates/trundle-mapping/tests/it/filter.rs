@@ -69,8 +69,8 @@ pub fn odometry(poses: &[Pose2]) -> Vec<Pose2> {
     let mut odom = vec![Pose2::IDENTITY];
     for (i, pair) in poses.windows(2).enumerate() {
         let step = pair[0].inverse() * pair[1];
-        let way = step.position().norm();
-        let turn = step.theta * 1.02 + 0.01 * way + 0.01 * noise(3 * i);
+        let distance = step.position().norm();
+        let turn = step.theta * 1.02 + 0.01 * distance + 0.01 * noise(3 * i);
         let wrong =
             Pose2::new(step.x * 0.97 + 0.02 * noise(3 * i + 1), step.y + 0.01 * noise(3 * i + 2), turn);
         odom.push(odom[i] * wrong);
@@ -144,13 +144,13 @@ fn poses_that_do_not_drift_are_believed_as_poses() {
             if i == 0 { 0.0 } else { 0.004 * noise(7 * i + 2) },
         )
     };
-    let told: Vec<Pose2> = poses.iter().enumerate().map(|(i, pose)| *pose * shake(i)).collect();
+    let prior: Vec<Pose2> = poses.iter().enumerate().map(|(i, pose)| *pose * shake(i)).collect();
     let worst = |pose_prior: Option<PosePriorConfig>| {
-        let (mapper, _) = run(&room, &poses, &told, ParticleConfig { pose_prior, ..config(10) }, 1);
+        let (mapper, _) = run(&room, &poses, &prior, ParticleConfig { pose_prior, ..config(10) }, 1);
         let mut worst = 0.0_f64;
         for (stamp, pose) in mapper.trajectory() {
             let i = ((stamp - Stamp::from_nanos(1_000_000_000)) / 0.2).round() as usize;
-            worst = worst.max(pose.distance(&(told[0].inverse() * poses[i])));
+            worst = worst.max(pose.distance(&(prior[0].inverse() * poses[i])));
         }
         worst
     };
@@ -173,8 +173,8 @@ fn believing(count: usize) -> (ParticleMapper, FlatRoom, Vec<Pose2>) {
 fn a_wild_pose_is_refused_and_the_next_one_is_not() {
     let (mut mapper, room, poses) = believing(20);
     for (i, x) in [(20, 300.0), (21, -1e5), (22, 1e200), (23, f64::MAX)] {
-        let said = mapper.update(Pose2 { x, ..poses[i] }, &laser(&room, poses[i], i));
-        assert_eq!(said, ScanUpdate::Refused(Refusal::OutOfReach), "{x}");
+        let reported = mapper.update(Pose2 { x, ..poses[i] }, &laser(&room, poses[i], i));
+        assert_eq!(reported, ScanUpdate::Refused(Refusal::OutOfReach), "{x}");
     }
     assert!(matches!(mapper.update(poses[24], &laser(&room, poses[24], 24)), ScanUpdate::Processed(_)));
     assert!(mapper.pose().distance(&(poses[0].inverse() * poses[24])) < 0.05);
@@ -190,13 +190,13 @@ fn wild_poses_that_agree_five_times_are_believed() {
     let update = |mapper: &mut ParticleMapper, i: usize, off: f64| {
         mapper.update(Pose2 { x: poses[i].x + off, ..poses[i] }, &laser(&room, poses[i], i))
     };
-    let is_refused = |said: ScanUpdate| said == ScanUpdate::Refused(Refusal::OutOfReach);
+    let is_refused = |reported: ScanUpdate| reported == ScanUpdate::Refused(Refusal::OutOfReach);
     assert!((20..24).all(|i| is_refused(update(&mut mapper, i, 300.0))));
     assert!(is_refused(update(&mut mapper, 24, -300.0)), "these are others");
     assert!((25..29).all(|i| is_refused(update(&mut mapper, i, 300.0))));
     assert!(matches!(update(&mut mapper, 29, 300.0), ScanUpdate::Processed(done) if done.jumped));
-    let way = mapper.pose().distance(&(poses[0].inverse() * poses[29]));
-    assert!((way - 300.0).abs() < 0.05, "{way} m");
+    let distance = mapper.pose().distance(&(poses[0].inverse() * poses[29]));
+    assert!((distance - 300.0).abs() < 0.05, "{distance} m");
     // A jump in the odometry is reported explicitly; afterwards the scans determine the pose.
     mapper.kidnapped();
     assert!(!is_refused(update(&mut mapper, 30, 0.0)));
@@ -250,7 +250,7 @@ fn a_bare_corridor_is_left_to_the_odometry() {
     let (mapper, done) = run(&room, &poses, &odom, near, 1);
     assert!(done[1..].iter().all(|p| p.degenerate == 1), "{done:?}");
     let along = mapper.pose().x - (odom.last().unwrap().x - odom[0].x);
-    assert!(along.abs() < 0.6, "the way is the odometry's: {along} m");
+    assert!(along.abs() < 0.6, "the path is that of the odometry: {along} m");
     assert!(mapper.pose().y.abs() < 0.06, "across is the walls': {} m", mapper.pose().y);
     let sigma = done.last().unwrap().covariance[(0, 0)].sqrt();
     assert!(sigma > 0.03 && done.last().unwrap().covariance[(1, 1)].sqrt() < 0.03, "{sigma}");
@@ -282,11 +282,11 @@ fn the_live_grid_is_the_best_particles_map_and_says_what_changed() {
             let geometry = *grid.geometry();
             for k in (0..geometry.len()).step_by(7) {
                 let (cell, p) = (geometry.cell(k), geometry.center(geometry.cell(k)));
-                let told = changed.iter().any(|(corner, (cols, rows))| {
+                let prior = changed.iter().any(|(corner, (cols, rows))| {
                     (corner.col..corner.col + cols).contains(&cell.col)
                         && (corner.row..corner.row + rows).contains(&cell.row)
                 });
-                assert!(told || at(&grid, p) == at(&old, p), "a change that was not told");
+                assert!(prior || at(&grid, p) == at(&old, p), "a change that was not reported");
             }
         }
     }

@@ -148,15 +148,15 @@ fn look_alike_places_are_not_distinguished_by_chance() {
     let (room, poses) = (twins(), round());
     let mapper = mapped(&room, &poses);
     let mut localizer = MapLocalizer::of(&mapper, 1);
-    let mut said = Vec::new();
+    let mut reported = Vec::new();
     for k in 0..12 {
         let pose = Pose2::new(-2.0, -2.0, 0.5 * f64::from(k));
-        said.push(
+        reported.push(
             localizer.update(Pose2::new(0.0, 0.0, 0.5 * f64::from(k)), &laser(&room, pose, k as usize)),
         );
     }
-    assert!(said.iter().all(|s| matches!(s, Localized::Lost(_))), "{said:?}");
-    assert_eq!(said.last(), Some(&Localized::Lost(Lost::SeveralPlaces)));
+    assert!(reported.iter().all(|s| matches!(s, Localized::Lost(_))), "{reported:?}");
+    assert_eq!(reported.last(), Some(&Localized::Lost(Lost::SeveralPlaces)));
 }
 
 #[test]
@@ -222,9 +222,9 @@ fn the_store_of_scans_stays_within_its_bounds() {
     for i in 0..poses.len() {
         mapper.update(odom[i], &laser(&room, poses[i], i));
     }
-    let way = mapper.trajectory();
-    assert!(way.len() <= 101, "{}", way.len());
-    assert!(way.windows(2).all(|pair| pair[0].0 < pair[1].0));
+    let path = mapper.trajectory();
+    assert!(path.len() <= 101, "{}", path.len());
+    assert!(path.windows(2).all(|pair| pair[0].0 < pair[1].0));
     let end = mapper.pose().distance(&(poses[0].inverse() * *poses.last().unwrap()));
     assert!(end < 0.3, "{end} m off");
 }

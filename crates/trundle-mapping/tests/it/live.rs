@@ -41,18 +41,18 @@ fn a_corrected_map_is_redrawn_in_slices() {
     let moved = live.correct(|stamp, _| now(index(stamp)));
     assert!(moved > middle / 2 && moved <= run.len() - middle, "{moved}");
     let before = live.grid().clone();
-    let (mut slices, mut most) = (0, 0);
+    let (mut slices, mut max) = (0, 0);
     loop {
         // During the redrawing the map in use is still published and receives new scans.
         assert_eq!(live.grid(), &before);
         let done = live.work(20_000);
-        most = most.max(done.cells);
+        max = max.max(done.cells);
         slices += 1;
         if done.left == 0 {
             break;
         }
     }
-    assert!(slices > 10 && most < 20_000 + 30_000, "{slices} slices, at most {most} cells");
+    assert!(slices > 10 && max < 20_000 + 30_000, "{slices} slices, at most {max} cells");
     // The result equals a map drawn at the corrected poses; scans nearer than 0.1 m to another are not redrawn.
     let mut fresh = GridMapper::new(config()).unwrap();
     for (i, (scan, _, _)) in run.iter().enumerate() {
@@ -81,15 +81,15 @@ fn all_is_redrawn_within_the_calls_asked_for() {
     for (calls, budget) in [(20, 0), (20, usize::MAX), (1, 0), (0, 0)] {
         let mut mapper = live.clone();
         assert!(mapper.correct(truth) > 20);
-        let (mut done, mut most) = (0, 0);
+        let (mut done, mut max) = (0, 0);
         while mapper.is_redrawing() {
             let (scan, pose, _) = &run[done % run.len()];
             mapper.insert(*pose, scan);
             let redrawn = mapper.work_within(budget, calls - done.min(calls));
-            (done, most) = (done + 1, most.max(redrawn.cells));
+            (done, max) = (done + 1, max.max(redrawn.cells));
         }
         assert_eq!(done, if budget > 0 { 1 } else { calls.max(1) });
-        all.push(most);
+        all.push(max);
     }
     assert!(all[0] < all[2] / 10, "the work is shared out: {all:?}");
 }
@@ -133,20 +133,20 @@ fn every_change_of_the_grid_is_reported() {
         }
         live.work(30_000);
         let grid = live.grid().clone();
-        let told: Vec<_> = live.changes_since(revision).collect();
+        let reported: Vec<_> = live.changes_since(revision).collect();
         if let Some(before) = shown.replace(grid.clone()) {
             let g = *grid.geometry();
             for k in 0..g.len() {
                 let cell = g.cell(k);
                 let changed = before.at(g.center(cell)) != grid.cells()[k];
-                let is_told = told.iter().any(|(corner, (cols, rows))| {
+                let is_told = reported.iter().any(|(corner, (cols, rows))| {
                     (corner.col..corner.col + cols).contains(&cell.col)
                         && (corner.row..corner.row + rows).contains(&cell.row)
                 });
-                assert!(!changed || is_told, "scan {i}, {pose:?}: a change that was not told");
+                assert!(!changed || is_told, "scan {i}, {pose:?}: a change that was not reported");
             }
             assert!(
-                told.len() < g.len() / 4096 || !(20..=79).contains(&i),
+                reported.len() < g.len() / 4096 || !(20..=79).contains(&i),
                 "not all of the map changes with a scan"
             );
         }

@@ -41,7 +41,7 @@ struct Row {
     ms: f64,
     length: f64,
     /// Time for the way-points.
-    way: f64,
+    distance: f64,
     /// The shortest any-angle length for the footprint.
     shortest: f64,
     /// The shortest any-angle length with the clearance that the plan keeps, up to the margin.
@@ -132,8 +132,8 @@ fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Result<Row, f6
         support::judge(grid, &result, *start, *goal, RADIUS);
         let by = |room: f64| shortest::shortest(&field, RADIUS + room, start.position(), goal.position());
         let (shortest, roomy) = (by(0.0), by(result.min_clearance.clamp(0.0, MARGIN)));
-        let (curves, way) = (result.curves().count(), result.waypoints.length());
-        Ok(Row { ms, length: result.length, way, shortest, roomy, curves, stages })
+        let (curves, distance) = (result.curves().count(), result.waypoints.length());
+        Ok(Row { ms, length: result.length, distance, shortest, roomy, curves, stages })
     };
     pairs.iter().map(ask).collect()
 }
@@ -168,7 +168,7 @@ fn print_row(name: &str, grid: &OccupancyGrid, asked: usize, rows: &[&Row]) {
     let ms = sorted(|row| row.ms);
     let ratio = sorted(|row| row.length / row.roomy);
     let bare = sorted(|row| row.length / row.shortest);
-    let way = sorted(|row| row.way / row.roomy);
+    let distance = sorted(|row| row.distance / row.roomy);
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let at = |values: &[f64], share: f64| values[((values.len() - 1) as f64 * share).round() as usize];
     let one = rows.iter().filter(|row| row.curves == 1).count();
@@ -182,7 +182,7 @@ fn print_row(name: &str, grid: &OccupancyGrid, asked: usize, rows: &[&Row]) {
         at(&ms, 1.0),
         mean(&ratio),
         at(&ratio, 1.0),
-        at(&way, 1.0),
+        at(&distance, 1.0),
         mean(&bare),
         at(&bare, 1.0)
     );

@@ -68,28 +68,28 @@ pub fn shortest(field: &DistanceField, radius: f64, from: Vector2, to: Vector2) 
 }
 
 fn trace(parent: &[usize], first: usize, last: usize) -> Vec<usize> {
-    let mut way = vec![last];
-    while way[way.len() - 1] != first {
-        way.push(parent[way[way.len() - 1]]);
+    let mut path = vec![last];
+    while path[path.len() - 1] != first {
+        path.push(parent[path[path.len() - 1]]);
     }
-    way.reverse();
-    way
+    path.reverse();
+    path
 }
 
 /// Moves corners towards the line between their neighbours while that line is free.
-fn taut(field: &DistanceField, radius: f64, mut way: Vec<Vector2>) -> f64 {
+fn taut(field: &DistanceField, radius: f64, mut path: Vec<Vector2>) -> f64 {
     for _ in 0..20 {
-        for i in 1..way.len().saturating_sub(1) {
-            let middle = (way[i - 1] + way[i + 1]) / 2.0;
-            let moved = [0.5, 0.1, 0.02].map(|share| way[i] + (middle - way[i]) * share);
+        for i in 1..path.len().saturating_sub(1) {
+            let middle = (path[i - 1] + path[i + 1]) / 2.0;
+            let moved = [0.5, 0.1, 0.02].map(|share| path[i] + (middle - path[i]) * share);
             let free =
-                |p: &Vector2| sees(field, radius, way[i - 1], *p) && sees(field, radius, *p, way[i + 1]);
+                |p: &Vector2| sees(field, radius, path[i - 1], *p) && sees(field, radius, *p, path[i + 1]);
             if let Some(better) = moved.into_iter().find(free) {
-                way[i] = better;
+                path[i] = better;
             }
         }
     }
-    way.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
+    path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
 }
 
 fn sees(field: &DistanceField, radius: f64, a: Vector2, b: Vector2) -> bool {

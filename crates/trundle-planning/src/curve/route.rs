@@ -113,7 +113,7 @@ pub(crate) fn is_drivable(context: &RouteContext<'_>, curve: &Curve) -> bool {
     smooth
         && samples.iter().all(|sample| {
             let at = sample.pose.position();
-            sample.curvature.abs() <= max_curvature && space.keeps(at, CLEARANCE_TOLERANCE_M)
+            sample.curvature.abs() <= max_curvature && space.has_clearance(at, CLEARANCE_TOLERANCE_M)
         })
         && context.shape.is_none_or(|shape| sweeps(space, shape, &samples))
 }

@@ -12,11 +12,11 @@ pub struct ExploreConfig {
     pub min_frontier: f64,
     /// Largest distance of a viewpoint from its frontier, m, 0.5 to 10. Default 2 (ours): near enough for a view behind the frontier.
     pub view_distance: f64,
-    /// Number of views after which a remaining frontier is ignored, 1 to 10. Default 2.
+    /// Number of views after which a remaining frontier is ignored, 1 to 10. Default 2 (ours).
     pub looks: u32,
     /// Gain of a metre of frontier, in metres of path, 0 to 10. A larger value prefers long frontiers to near ones. Default 0.5 (ours).
     pub gain: f64,
-    /// Largest distance of a frontier from the start, m, 1 to 1000. Farther frontiers are ignored. Default 50.
+    /// Largest distance of a frontier from the start, m, 1 to 1000. Farther frontiers are ignored. Default 50 (ours).
     pub reach: f64,
 }
 

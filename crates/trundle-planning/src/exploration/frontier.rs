@@ -21,10 +21,10 @@ impl Frontier {
     }
 }
 
-/// All frontiers of at least `least` metres, ordered by their first cell in the grid.
+/// All frontiers of at least `min` metres, ordered by their first cell in the grid.
 ///
 /// A frontier cell is free and has an unknown 4-neighbour; cells that touch (8-neighbours) are one frontier. O(cells).
-pub(super) fn frontiers(grid: &OccupancyGrid, least: f64) -> Vec<Frontier> {
+pub(super) fn frontiers(grid: &OccupancyGrid, min: f64) -> Vec<Frontier> {
     let geometry = grid.geometry();
     let mut open: Vec<bool> = (0..geometry.len()).map(|i| is_frontier(grid, geometry.cell(i))).collect();
     let mut found = Vec::new();
@@ -32,7 +32,7 @@ pub(super) fn frontiers(grid: &OccupancyGrid, least: f64) -> Vec<Frontier> {
         if open[first] {
             let cells = component(geometry, &mut open, first);
             let length = cells.len() as f64 * geometry.resolution;
-            if length >= least {
+            if length >= min {
                 found.push(Frontier { middle: middle(geometry, &cells), length });
             }
         }

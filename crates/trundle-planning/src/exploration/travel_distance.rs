@@ -71,7 +71,7 @@ pub(super) fn disc(
     radius: f64,
 ) -> impl Iterator<Item = CellIndex> + use<> {
     let geometry = *geometry;
-    let place = |value: f64, most: usize| (value / geometry.resolution).clamp(0.0, most as f64) as usize;
+    let place = |value: f64, max: usize| (value / geometry.resolution).clamp(0.0, max as f64) as usize;
     let (low, high) =
         (middle.add_scalar(-radius) - geometry.origin, middle.add_scalar(radius) - geometry.origin);
     let cols = place(low.x, geometry.width)..(place(high.x, geometry.width) + 1).min(geometry.width);

@@ -4,7 +4,7 @@ use super::speed_mask::SpeedMask;
 use std::ops::Range;
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, Vector2, Zone, ZoneKind};
 
-/// Most cells of a speed mask. Larger zones get larger cells. Source: ours; 4 MB.
+/// Maximum number of cells of a speed mask. Larger zones get larger cells. Source: ours; 4 MB.
 const MAX_SPEED_MASK_CELLS: f64 = 1e6;
 
 /// Occupies every cell of a grid that a no-go zone touches.

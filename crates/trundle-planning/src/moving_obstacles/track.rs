@@ -129,12 +129,12 @@ impl Track {
         let walk = self.walked(time).filter(|walk| self.is_hidden() || self.has_stopped(*walk));
         let (at, radius) = (self.last().at, self.radius(config));
         walk.into_iter().flat_map(move |velocity| {
-            let way = velocity * FORECAST_HORIZON_S;
-            let steps = (way.norm() / CELL_SIDE_M).ceil().max(1.0) as usize;
+            let offset = velocity * FORECAST_HORIZON_S;
+            let steps = (offset.norm() / CELL_SIDE_M).ceil().max(1.0) as usize;
             let between = ((radius / CELL_SIDE_M) as usize).max(1);
             let is_open =
                 move |middle: &Vector2| (middle - sensor).norm() > radius && !cells.is_wall(*middle);
-            let middles = (1..=steps).map(move |k| at + way * (k as f64 / steps as f64));
+            let middles = (1..=steps).map(move |k| at + offset * (k as f64 / steps as f64));
             let discs = middles.take_while(is_open).skip(between - 1).step_by(between);
             discs.map(move |middle| (middle, Vector2::zeros(), radius))
         })
@@ -149,7 +149,7 @@ impl Track {
     ) -> Option<(Vector2, f64)> {
         let last = self.last();
         let radius = self.radius(config);
-        let way = if self.moves(cells, config) {
+        let offset = if self.moves(cells, config) {
             self.velocity * config.window
         } else if 2 * self.hits.iter().filter(|hit| cells.is_hit_since(**hit, last.time)).count()
             > self.hits.len()
@@ -159,8 +159,8 @@ impl Track {
         } else {
             Vector2::zeros()
         };
-        let steps = (way.norm() / CELL_SIDE_M).ceil().min(100.0) as usize;
-        let on = (0..=steps).map(|i| last.at + way * (i as f64 / steps.max(1) as f64));
+        let steps = (offset.norm() / CELL_SIDE_M).ceil().min(100.0) as usize;
+        let on = (0..=steps).map(|i| last.at + offset * (i as f64 / steps.max(1) as f64));
         let is_unseen = |at: &Vector2| {
             let range = (at - sensor).norm();
             let has_room = range >= MIN_HIDDEN_RANGE_M || *at == last.at;

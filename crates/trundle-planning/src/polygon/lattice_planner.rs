@@ -66,7 +66,7 @@ impl LatticePlanner {
         for place in first {
             self.seed(space, shape, away, place);
         }
-        let (mut nearest, mut least) = (start.position(), f64::INFINITY);
+        let (mut nearest, mut min) = (start.position(), f64::INFINITY);
         while let Some((_, Entry { cell: state, cost })) = self.queue.pop() {
             let state = state as usize;
             if cost > self.cost[state] {
@@ -74,8 +74,8 @@ impl LatticePlanner {
             }
             let pose = pose_of(space, state);
             let off = (pose.position() - goal.position()).norm();
-            if off < least {
-                (least, nearest) = (off, pose.position());
+            if off < min {
+                (min, nearest) = (off, pose.position());
             }
             if last.contains(&space.place(state / HEADING_COUNT))
                 && let Some(arrival) = link(space, shape, pose, before)

@@ -29,12 +29,12 @@ pub(crate) struct RobotShape {
     pub(crate) inner: f64,
     /// Centre and radius of the largest disc inside the footprint, base frame, m.
     pub(crate) inscribed: (Vector2, f64),
-    leaving: Option<Box<Leaving>>,
+    escaping: Option<Box<EscapingFootprint>>,
 }
 
 /// A footprint that leaves its overlap at the start.
 #[derive(Debug, Clone, PartialEq)]
-struct Leaving {
+struct EscapingFootprint {
     escape: Escape,
     /// The footprint, shrunk until it is free at the start.
     slim: RobotShape,
@@ -42,7 +42,7 @@ struct Leaving {
 
 /// Overlap of a disc with obstacles, m; `None` if the disc is free.
 pub(crate) fn missing_about_disc(field: &DistanceField, at: Vector2, radius: f64) -> Option<f64> {
-    (!field.keeps(at, radius)).then(|| radius - field.clearance(at, radius))
+    (!field.has_clearance(at, radius)).then(|| radius - field.clearance(at, radius))
 }
 
 impl RobotShape {
@@ -55,7 +55,7 @@ impl RobotShape {
                 radius,
                 inner: radius,
                 inscribed: (Vector2::zeros(), radius),
-                leaving: None,
+                escaping: None,
             },
             Footprint::Polygon { corners } => {
                 let inner = depth_within(corners, Vector2::zeros()).max(0.0);
@@ -64,7 +64,7 @@ impl RobotShape {
                     radius,
                     inner,
                     inscribed: inscribed_disc(corners),
-                    leaving: None,
+                    escaping: None,
                 };
                 whole.shrunk(CONTACT_TOLERANCE_M).unwrap_or(whole)
             }
@@ -114,7 +114,7 @@ impl RobotShape {
 
     /// The same shape, treated near `start` as `by` m smaller against the obstacles that it overlaps there: it may leave the overlap but
     /// not deepen it.
-    pub(crate) fn leaving(&self, field: &DistanceField, start: Pose2, by: f64) -> Option<Self> {
+    pub(crate) fn escaping(&self, field: &DistanceField, start: Pose2, by: f64) -> Option<Self> {
         let slim = self.shrunk(by)?;
         let (outline, half) = (self.outline(start), field.geometry().resolution / 2.0);
         let escape = Escape::new(start.position(), by, half * 2.0);
@@ -122,17 +122,17 @@ impl RobotShape {
             [] => (point_to_square(start.position(), centre, half).norm() - self.radius).max(0.0),
             _ => polygon_to_square(&outline, centre, half, f64::INFINITY),
         });
-        Some(Self { leaving: Some(Box::new(Leaving { escape, slim })), ..self.clone() })
+        Some(Self { escaping: Some(Box::new(EscapingFootprint { escape, slim })), ..self.clone() })
     }
 
     /// Depth of the overlap that the shape leaves, m; 0 without one.
     pub(crate) fn depth(&self) -> f64 {
-        self.leaving.as_ref().map_or(0.0, |leaving| leaving.escape.depth)
+        self.escaping.as_ref().map_or(0.0, |escaping| escaping.escape.depth)
     }
 
     /// Whether a pose is still near the overlap at the start.
-    pub(crate) fn is_leaving(&self, pose: Pose2) -> bool {
-        self.leaving.as_ref().is_some_and(|leaving| leaving.escape.covers(pose.position()))
+    pub(crate) fn is_escaping(&self, pose: Pose2) -> bool {
+        self.escaping.as_ref().is_some_and(|escaping| escaping.escape.covers(pose.position()))
     }
 
     pub(crate) fn is_disc(&self) -> bool {
@@ -154,10 +154,10 @@ impl RobotShape {
     /// The exact distance between the footprint at a pose and the nearest obstacle, at most `cap` m; 0 if they meet. While the shape leaves
     /// an overlap: the distance by which it may still approach.
     pub(crate) fn gap(&self, field: &DistanceField, pose: Pose2, cap: f64) -> f64 {
-        match &self.leaving {
-            Some(leaving) if leaving.escape.covers(pose.position()) => {
-                let cap = leaving.slim.gap_to(field, pose, cap);
-                leaving.escape.others().map_or(cap, |others| self.gap_to(others, pose, cap))
+        match &self.escaping {
+            Some(escaping) if escaping.escape.covers(pose.position()) => {
+                let cap = escaping.slim.gap_to(field, pose, cap);
+                escaping.escape.others().map_or(cap, |others| self.gap_to(others, pose, cap))
             }
             _ => self.gap_to(field, pose, cap),
         }

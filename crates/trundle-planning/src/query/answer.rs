@@ -37,7 +37,7 @@ fn plan_escape(
 ) -> Plan {
     let escape = query.config.room.escape;
     let depth = query.shape.overlap(query.field, start, escape.max(MAX_OVERLAP_M));
-    let leaving = (depth <= escape).then(|| query.shape.leaving(query.field, start, depth)).flatten();
+    let leaving = (depth <= escape).then(|| query.shape.escaping(query.field, start, depth)).flatten();
     match leaving {
         Some(shape) if shape.gap(query.field, start, 1e-3) > 0.0 => {
             plan_disc_or_polygon(&PlanQuery { shape: &shape, ..*query }, memory, start, twist, goal)

@@ -155,14 +155,14 @@ impl PlanQuery<'_> {
         }
         let radius = self.shape.radius;
         let surely = self.field.overestimate(radius);
-        trajectory.points().iter().fold(MAX_CLEARANCE_M, |least, point| {
+        trajectory.points().iter().fold(MAX_CLEARANCE_M, |min, point| {
             let at = point.pose.position();
-            if self.field.distance(at) - surely - radius > least {
-                least
+            if self.field.distance(at) - surely - radius > min {
+                min
             } else if self.shape.is_disc() {
-                self.field.clearance(at, least + radius) - radius
+                self.field.clearance(at, min + radius) - radius
             } else {
-                self.shape.gap(self.field, point.pose, least)
+                self.shape.gap(self.field, point.pose, min)
             }
         })
     }

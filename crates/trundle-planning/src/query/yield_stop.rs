@@ -10,7 +10,7 @@ use trundle_core::Trajectory;
 /// Number of stop positions that are tried, from the earliest possible stop to the encounter. Source: ours.
 const STOP_CANDIDATES: usize = 8;
 
-/// The plan's phases with a stop and a wait on the first curve, after which no moving obstacle is met; and the wait, s. Among the
+/// The plan's phases with a stop and a wait on the first curve, after which no moving obstacle crosses the curve; and the wait, s. Among the
 /// candidates, the one with the earliest arrival is chosen.
 pub(crate) fn with_yield_stop(
     query: &PlanQuery<'_>,

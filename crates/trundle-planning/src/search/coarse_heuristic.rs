@@ -138,15 +138,15 @@ impl CoarseHeuristic {
         let corners = [(left, low), (right, low), (left, high), (right, high)];
         let blocks = corners.map(|(c, r)| r * self.width + c);
         let costs = blocks.map(|block| self.cost[block]);
-        let mut least = costs.into_iter().fold(UNREACHED, u32::min);
+        let mut min = costs.into_iter().fold(UNREACHED, u32::min);
         if self.frontier < UNREACHED && costs.contains(&UNREACHED) {
             let bound = |block: usize| self.frontier.saturating_sub(self.remaining(block));
-            least = blocks.into_iter().map(bound).fold(least, u32::min);
+            min = blocks.into_iter().map(bound).fold(min, u32::min);
         }
-        if least == UNREACHED {
+        if min == UNREACHED {
             return 0;
         }
-        let [a, b, c, d] = costs.map(|cost| u64::from(if cost == UNREACHED { least } else { cost }));
+        let [a, b, c, d] = costs.map(|cost| u64::from(if cost == UNREACHED { min } else { cost }));
         let side = 2 * BLOCK_SIDE_CELLS as u64;
         let (below, above) = (a * (side - u) + b * u, c * (side - u) + d * u);
         let middle = (below * (side - v) + above * v) / (side * side);

@@ -57,11 +57,9 @@ impl<'a> ConfigurationSpace<'a> {
         let resolution = field.geometry().resolution;
         let escape = (missing > CLEARANCE_TOLERANCE_M).then(|| Escape::new(start, missing, resolution));
         let offset = (field.geometry().origin - grid.geometry().origin) / grid.geometry().resolution;
-        let least = if missing > CLEARANCE_TOLERANCE_M { at_start } else { radius };
-        let check_step = (8.0 * least * MAX_DIP_M)
-            .sqrt()
-            .max(1e-3)
-            .min(MAX_CHECK_STEP_CELLS * field.geometry().resolution);
+        let min = if missing > CLEARANCE_TOLERANCE_M { at_start } else { radius };
+        let check_step =
+            (8.0 * min * MAX_DIP_M).sqrt().max(1e-3).min(MAX_CHECK_STEP_CELLS * field.geometry().resolution);
         let is_same = field.geometry() == grid.geometry();
         let shift = (!is_same).then_some((offset.x.round() as i64, offset.y.round() as i64));
         let per_price = COSTS_PER_CELL / field.geometry().resolution;
@@ -110,15 +108,15 @@ impl<'a> ConfigurationSpace<'a> {
 
     /// Whether the robot may be at a point.
     pub(crate) fn is_free(&self, point: Vector2) -> bool {
-        self.keeps(point, 0.0)
+        self.has_clearance(point, 0.0)
     }
 
     /// Whether the clearance at a point is at most `short` m less than required: the radius, or less in the escape zone.
-    pub(crate) fn keeps(&self, point: Vector2, short: f64) -> bool {
+    pub(crate) fn has_clearance(&self, point: Vector2, short: f64) -> bool {
         let escape = self.escape.as_ref().filter(|escape| escape.covers(point));
-        let Some(escape) = escape else { return self.field.keeps(point, self.radius - short) };
-        self.field.keeps(point, self.radius - escape.depth - short)
-            && escape.others().is_none_or(|others| others.keeps(point, self.radius - short))
+        let Some(escape) = escape else { return self.field.has_clearance(point, self.radius - short) };
+        self.field.has_clearance(point, self.radius - escape.depth - short)
+            && escape.others().is_none_or(|others| others.has_clearance(point, self.radius - short))
     }
 
     /// Whether the robot may be at the representative point of a cell.
@@ -139,8 +137,8 @@ impl<'a> ConfigurationSpace<'a> {
 
     /// Whether the straight move between neighbouring free cells `length` m apart is free.
     pub(crate) fn joins(&self, from: usize, to: usize, length: f64) -> bool {
-        let least = self.field.at_linear(from).min(self.field.at_linear(to));
-        if least * least >= self.radius * self.radius + length * length / 4.0 {
+        let min = self.field.at_linear(from).min(self.field.at_linear(to));
+        if min * min >= self.radius * self.radius + length * length / 4.0 {
             return true;
         }
         self.connects(self.point_of(from), self.point_of(to))

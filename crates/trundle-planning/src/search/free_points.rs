@@ -18,7 +18,7 @@ fn choose(space: &ConfigurationSpace<'_>, cell: usize) -> u8 {
         return 0;
     }
     let centre = space.centre(cell);
-    if space.field.at_linear(cell) == 0.0 || !space.keeps(centre, space.half_diagonal()) {
+    if space.field.at_linear(cell) == 0.0 || !space.has_clearance(centre, space.half_diagonal()) {
         return NO_POINT;
     }
     let resolution = space.field.geometry().resolution;

@@ -53,8 +53,8 @@ pub(super) fn speeds(
     if window > 0.0 {
         v = minimum_around(samples, &v, window);
         let accelerations: Vec<f64> = samples.windows(2).map(|pair| acceleration(pair, drive)).collect();
-        let least = minimum_around(&samples[1..], &accelerations, window);
-        gain = samples.windows(2).zip(least).map(|(pair, a)| 2.0 * distance(pair) * a).collect();
+        let min = minimum_around(&samples[1..], &accelerations, window);
+        gain = samples.windows(2).zip(min).map(|(pair, a)| 2.0 * distance(pair) * a).collect();
     }
     let last = v.len() - 1;
     v[last] = 0.0;
@@ -76,15 +76,15 @@ pub(super) fn speeds(
 /// For each value the minimum of those within `window` m.
 fn minimum_around(samples: &[CurveSample], values: &[f64], window: f64) -> Vec<f64> {
     let mut first = 0;
-    let least = |i: usize| {
+    let min = |i: usize| {
         while samples[first].arc < samples[i].arc - window {
             first += 1;
         }
         let near = samples[first..].iter().zip(&values[first..]);
         near.take_while(|(sample, _)| sample.arc <= samples[i].arc + window)
-            .fold(f64::INFINITY, |least, (_, value)| least.min(*value))
+            .fold(f64::INFINITY, |min, (_, value)| min.min(*value))
     };
-    (0..values.len()).map(least).collect()
+    (0..values.len()).map(min).collect()
 }
 
 /// Whether braking as hard as allowed from `v_start` stays below every ceiling of the drive, and ends at rest.
@@ -126,7 +126,7 @@ fn ceilings(samples: &[CurveSample], drive: &DriveModel, ceiling: impl Fn(Pose2)
                 .v
                 .min(limits.omega / curvature.max(1e-9))
                 .min(limits.wheel_speed / (1.0 + drive.half_base * curvature))
-                .min(beside.iter().fold(f64::INFINITY, |least, v| least.min(*v)))
+                .min(beside.iter().fold(f64::INFINITY, |min, v| min.min(*v)))
         })
         .collect();
     for (i, pair) in samples.windows(2).enumerate() {

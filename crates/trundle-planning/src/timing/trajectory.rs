@@ -163,10 +163,10 @@ mod tests {
                 assert!((there.pose.x - arc.min(0.3)).abs() < 0.021, "{arc} m at {v} m/s: {:?}", there.pose);
                 assert!(there.twist.v.abs() < 1e-9);
                 for pair in trajectory.points().windows(2) {
-                    let (way, dt) = (pair[0].pose.distance(&pair[1].pose), pair[1].time - pair[0].time);
+                    let (distance, dt) = (pair[0].pose.distance(&pair[1].pose), pair[1].time - pair[0].time);
                     assert!(
-                        way <= DriveLimits::KOBUKI.v * dt + 1e-6,
-                        "{arc} m at {v} m/s: {way} m in {dt} s"
+                        distance <= DriveLimits::KOBUKI.v * dt + 1e-6,
+                        "{arc} m at {v} m/s: {distance} m in {dt} s"
                     );
                 }
                 assert!(trajectory.end().distance(&Pose2::new(0.3, 0.0, 0.0)) < 1e-9);

@@ -61,7 +61,7 @@ fn the_printed_potential_is_trapped_and_rescued() {
     judge(&grid, &rescued, start, goal, 0.1755);
     let near = Pose2::new(0.7, 0.7, 0.0);
     let direct = found_plan(planner.plan(&grid, near, Twist2::ZERO, Pose2::new(4.9, 0.5, 0.0)));
-    assert!(!direct.fell_back, "an open way needs no rescue");
+    assert!(!direct.fell_back, "an open path needs no fallback");
 }
 
 #[test]

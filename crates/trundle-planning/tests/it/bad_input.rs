@@ -1,4 +1,4 @@
-//! Questions that have no way for an answer.
+//! Queries without a path as the answer.
 
 use crate::support::{at_home, clearance, found_plan, judge, planner};
 use trundle_core::{
@@ -121,8 +121,8 @@ fn a_start_within_the_clearance_is_planned_out_of() {
 }
 
 #[test]
-fn unknown_space_is_allowed_dear_or_forbidden() {
-    // A known way around an unknown field: 1.4 times as long.
+fn unknown_space_is_allowed_has_a_high_cost_or_is_forbidden() {
+    // A known path around an unknown field: 1.4 times as long.
     let mut grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(60); 40].join("\n")).unwrap();
     for col in 20..40 {
         (5..40).for_each(|row| grid.set(CellIndex { col, row }, Cell::Unknown));

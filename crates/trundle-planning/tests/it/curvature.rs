@@ -32,17 +32,17 @@ fn bends() -> OccupancyGrid {
 #[test]
 fn corners_are_taken_as_gently_as_asked() {
     let (start, goal) = (Pose2::new(0.8, 0.8, 0.0), Pose2::new(9.0, 5.2, 0.0));
-    for most in [8.0, 3.0, 2.0, 1.5, 1.2] {
-        let result = found_plan(planner(gentle(most), RADIUS).plan(&bends(), start, Twist2::ZERO, goal));
+    for max in [8.0, 3.0, 2.0, 1.5, 1.2] {
+        let result = found_plan(planner(gentle(max), RADIUS).plan(&bends(), start, Twist2::ZERO, goal));
         judge(&bends(), &result, start, goal, RADIUS);
         eprintln!(
-            "at most {most} /m: {:.2} /m, {} phases, {:.2} m",
+            "at most {max} /m: {:.2} /m, {} phases, {:.2} m",
             sharpest(&result),
             result.phases.len(),
             result.length
         );
-        assert!(sharpest(&result) <= most * 1.001, "{} of {most}", sharpest(&result));
-        assert_eq!(result.phases.len(), 1, "{most}: {:?}", result.phases);
+        assert!(sharpest(&result) <= max * 1.001, "{} of {max}", sharpest(&result));
+        assert_eq!(result.phases.len(), 1, "{max}: {:?}", result.phases);
     }
 }
 
@@ -60,14 +60,14 @@ proptest! {
     /// Two arcs and a line between these headings have the room; so has a curve.
     #[test]
     fn an_open_floor_has_a_gentle_curve(
-        x in 4.0..5.0, y in -1.0..1.0, start in -0.7..0.7, end in -0.7..0.7, most in 1.0..4.0,
+        x in 4.0..5.0, y in -1.0..1.0, start in -0.7..0.7, end in -0.7..0.7, max in 1.0..4.0,
     ) {
         let grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(120); 120].join("\n")).unwrap();
-        let way = f64::atan2(y, x);
-        let (start, goal) = (Pose2::new(3.0, 6.0, way + start), Pose2::new(3.0 + x, 6.0 + y, way + end));
-        let result = found_plan(planner(gentle(most), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
+        let heading = f64::atan2(y, x);
+        let (start, goal) = (Pose2::new(3.0, 6.0, heading + start), Pose2::new(3.0 + x, 6.0 + y, heading + end));
+        let result = found_plan(planner(gentle(max), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
         judge(&grid, &result, start, goal, RADIUS);
-        prop_assert!(sharpest(&result) <= most * 1.001, "{} of {most}", sharpest(&result));
-        prop_assert!(result.phases.len() == 1, "{most}: {:?}", result.phases.len());
+        prop_assert!(sharpest(&result) <= max * 1.001, "{} of {max}", sharpest(&result));
+        prop_assert!(result.phases.len() == 1, "{max}: {:?}", result.phases.len());
     }
 }

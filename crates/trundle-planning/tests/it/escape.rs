@@ -24,14 +24,14 @@ fn judge_escape(grid: &OccupancyGrid, plan: &PlanResult, start: Pose2) {
     const ROUNDING: f64 = 3e-4;
     let resolution = grid.geometry().resolution;
     let there = squares(grid, start.position());
-    let least = there.iter().map(|(_, d)| *d).fold(RADIUS, f64::min);
-    let zone = RADIUS - least + f64::max(0.2, 3.0 * resolution) + 1e-3;
+    let min = there.iter().map(|(_, d)| *d).fold(RADIUS, f64::min);
+    let zone = RADIUS - min + f64::max(0.2, 3.0 * resolution) + 1e-3;
     let beside: Vec<usize> =
         there.iter().filter(|(_, d)| *d < RADIUS + 2.0 * resolution + 1e-6).map(|(i, _)| *i).collect();
     for point in plan.trajectory.points() {
         let near = point.pose.distance(&start) <= zone;
         for (square, distance) in squares(grid, point.pose.position()) {
-            let required = if near && beside.contains(&square) { least } else { RADIUS };
+            let required = if near && beside.contains(&square) { min } else { RADIUS };
             assert!(
                 distance >= required - ROUNDING,
                 "{distance} of {required} at {:?}, start {start:?}",

@@ -74,9 +74,9 @@ proptest! {
         let low = (point - field.geometry().origin) / RESOLUTION - Vector2::repeat(0.5);
         let at = |dx: usize, dy: usize| field.at_cell(CellIndex { col: low.x as usize + dx, row: low.y as usize + dy });
         let around = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-        let (least, most) = around.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), d| (a.min(*d), b.max(*d)));
+        let (min, max) = around.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), d| (a.min(*d), b.max(*d)));
         let distance = field.distance(point);
-        prop_assert!(distance >= least - 1e-9 && distance <= most + 1e-9);
+        prop_assert!(distance >= min - 1e-9 && distance <= max + 1e-9);
     }
 
     #[test]

@@ -100,8 +100,8 @@ proptest! {
     ) {
         let grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(80); 80].join("\n")).unwrap();
         let from = Pose2::new(2.0, 4.0, 0.0);
-        let way = f64::atan2(y, x);
-        let (start, goal) = (Pose2::new(2.0, 4.0, way + start), Pose2::new(2.0 + x, 4.0 + y, way + end));
+        let angle = f64::atan2(y, x);
+        let (start, goal) = (Pose2::new(2.0, 4.0, angle + start), Pose2::new(2.0 + x, 4.0 + y, angle + end));
         let result = found_plan(planner(into_headings(), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
         judge(&grid, &result, start, goal, RADIUS);
         prop_assert!(from.distance(&start) == 0.0 && result.phases.len() == 1, "{:?}", result.phases);

@@ -39,7 +39,7 @@ fn mask(low: (f64, f64), high: (f64, f64)) -> OccupancyGrid {
 }
 
 #[test]
-fn masks_that_say_nothing_change_no_bit_of_the_plan() {
+fn neutral_masks_change_no_bit_of_the_plan() {
     let plain = planned(&mut planner(at_home(), RADIUS));
     let (geometry, cells) = (*floor().geometry(), floor().geometry().len());
     let mut masked = planner(at_home(), RADIUS);

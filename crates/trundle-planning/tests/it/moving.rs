@@ -27,7 +27,7 @@ fn min_gap_within(trajectory: &Trajectory, from: Vector2, velocity: Vector2) -> 
 }
 
 #[test]
-fn someone_who_crosses_is_let_pass_or_gone_around() {
+fn a_crossing_person_is_waited_for_or_driven_around() {
     let (start, goal) = (Pose2::new(1.0, 2.0, 0.0), Pose2::new(5.0, 2.0, 0.0));
     for (height, from, velocity) in
         [(40, (1.9, 0.6), (0.0, 0.9)), (12, (1.8, 0.3), (0.0, 0.35)), (40, (3.3, 2.0), (-0.6, 0.0))]
@@ -47,7 +47,7 @@ fn someone_who_crosses_is_let_pass_or_gone_around() {
     }
 }
 
-/// Under way in a corridor too narrow to go around in.
+/// In motion in a corridor too narrow for a detour.
 #[test]
 fn a_robot_that_moves_stops_for_someone_who_crosses_and_goes_on() {
     let mut grid = hall(12);

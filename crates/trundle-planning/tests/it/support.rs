@@ -47,15 +47,15 @@ pub fn clearance(grid: &OccupancyGrid, point: Vector2) -> f64 {
 /// Least distance of a trajectory's centre from obstacles, m.
 pub fn min_clearance(grid: &OccupancyGrid, result: &PlanResult) -> f64 {
     let mut at = Vector2::repeat(f64::INFINITY);
-    let mut least = f64::INFINITY;
+    let mut min = f64::INFINITY;
     for point in result.trajectory.points() {
         let position = point.pose.position();
         if (position - at).norm() > 0.002 {
             at = position;
-            least = least.min(clearance(grid, position));
+            min = min.min(clearance(grid, position));
         }
     }
-    least
+    min
 }
 
 /// Checks the properties of every plan: ends, limits, rest, clearance, and the agreement of pose and twist.

@@ -110,7 +110,7 @@ fn two_people_are_found_where_they_are_and_will_be() {
 }
 
 #[test]
-fn someone_who_comes_straight_at_the_robot_is_seen_soon() {
+fn a_person_who_approaches_the_robot_is_detected_soon() {
     let mut world = World::new(&[(at(6.0, 3.0), at(-0.8, 0.0))]);
     let mut tracker = tracker();
     let pose = Pose2::new(1.0, 3.0, 0.0);
@@ -149,7 +149,7 @@ fn objects_that_stand_appear_or_come_into_view_are_not_movers() {
 }
 
 #[test]
-fn who_stops_may_go_on_for_a_while() {
+fn a_track_that_stops_keeps_a_forecast_for_a_while() {
     let (mut tracker, pose) = (tracker(), Pose2::new(1.0, 3.0, 0.0));
     let walks = (at(4.0, 2.0), at(0.0, 0.7));
     assert_eq!(watched(&mut tracker, &mut World::new(&[walks]), pose, 2.0, LASER).len(), 1);
@@ -175,7 +175,7 @@ fn who_stops_may_go_on_for_a_while() {
 }
 
 #[test]
-fn who_stopped_and_is_gone_is_none() {
+fn a_stopped_track_that_left_is_dropped() {
     let mut tracker = tracker();
     let mut world = World::new(&[(at(4.0, 2.0), at(0.0, 0.7))]);
     let pose = Pose2::new(1.0, 3.0, 0.0);
@@ -191,7 +191,7 @@ fn who_stopped_and_is_gone_is_none() {
 }
 
 #[test]
-fn who_stops_before_a_wall_does_not_go_on_through_it() {
+fn the_forecast_of_a_track_before_a_wall_ends_there() {
     let mut tracker = tracker();
     let pose = Pose2::new(1.0, 3.0, 0.0);
     let walks = (at(4.0, 3.6), at(0.0, 0.8));
@@ -209,7 +209,7 @@ fn who_stops_before_a_wall_does_not_go_on_through_it() {
 }
 
 #[test]
-fn who_is_lost_from_sight_soon_after_they_stopped_is_remembered() {
+fn a_track_hidden_soon_after_its_stop_is_kept() {
     let mut tracker = tracker();
     let walks = (at(4.0, 1.6), at(0.0, 0.7));
     let (ahead, away) = (Pose2::new(2.5, 3.0, 0.0), Pose2::new(2.5, 3.0, -2.0));
@@ -280,7 +280,7 @@ fn unconfirmed_hits(tracker: &MovingObstacleTracker, now: f64) -> Vec<Vector2> {
 }
 
 #[test]
-fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
+fn a_track_in_the_blind_range_is_kept_until_it_is_observed_to_leave() {
     let mut tracker = tracker();
     // At 1.5 s a person stops before the camera, at 0.4 m, within the blind range.
     let mut world = World::new(&[(at(1.5, 4.2), at(0.0, -0.8))]);
@@ -300,7 +300,7 @@ fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
 }
 
 #[test]
-fn who_hides_is_as_large_as_they_ever_looked() {
+fn a_partly_hidden_track_keeps_its_largest_size() {
     // Of a person who stops next to the blind zone, only the edge remains visible.
     let (mut tracker, mut world) = (tracker(), World::new(&[(at(1.5, 4.2), at(0.0, -0.8))]));
     dim(&mut tracker, &mut world, (0.0, 1.5, 1.5), 0.5);
@@ -313,7 +313,7 @@ fn who_hides_is_as_large_as_they_ever_looked() {
 }
 
 #[test]
-fn of_whom_an_edge_is_seen_on_stands_there_for_safety() {
+fn a_track_with_one_visible_edge_counts_as_present() {
     let (mut tracker, mut world) = (tracker(), World::new(&[(at(1.82, 4.2), at(0.0, -0.8))]));
     for k in 0..75 {
         let now = 0.1 * f64::from(k);
@@ -328,7 +328,7 @@ fn of_whom_an_edge_is_seen_on_stands_there_for_safety() {
 }
 
 #[test]
-fn who_stood_where_the_camera_is_blind_now_still_stands_there() {
+fn a_track_that_stood_in_the_present_blind_range_is_kept() {
     let mut tracker = tracker();
     let (mut nobody, mut world) = (World::new(&[]), World::new(&[(at(1.8, 3.0), at(0.0, 0.0))]));
     dim(&mut tracker, &mut nobody, (0.0, 1.0, 0.0), 0.3);
@@ -425,7 +425,7 @@ fn map(drawn: &[(Vector2, f64)]) -> OccupancyGrid {
 }
 
 #[test]
-fn someone_seen_to_cross_is_let_pass() {
+fn an_observed_crossing_person_is_waited_for() {
     let (pose, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(6.0, 3.0, 0.0));
     let crosses = (at(2.2, 0.9), at(0.0, 0.7));
     let (mut tracker, mut world) = (tracker(), World::new(&[crosses]));
@@ -448,8 +448,8 @@ fn someone_seen_to_cross_is_let_pass() {
         let time = f64::from(k) * 0.01;
         (plan.trajectory.at(time).pose.position() - now - crosses.1 * time).norm() - PERSON - RADIUS
     };
-    let least = (0..=200).map(gap).fold(9.0, f64::min);
-    assert!(least > 0.0, "{least}");
+    let min = (0..=200).map(gap).fold(9.0, f64::min);
+    assert!(min > 0.0, "{min}");
 }
 
 #[test]
@@ -468,14 +468,14 @@ fn a_wall_beside_someone_stays() {
 fn a_scan_costs_little() {
     let (mut tracker, mut world) = (tracker(), World::new(&[(at(4.0, 2.0), at(0.0, 0.7))]));
     let pose = Pose2::new(1.0, 3.0, 0.0);
-    let mut least = f64::INFINITY;
+    let mut min = f64::INFINITY;
     for k in 0..30 {
         let scan = world.scan(pose, f64::from(k) * 0.1, (640, 1.0));
         let begin = cpu_ms();
         tracker.add_scan(pose, &scan);
-        least = least.min(cpu_ms() - begin);
+        min = min.min(cpu_ms() - begin);
     }
-    eprintln!("obstacles: a scan of 640 beams {least:.3} ms CPU");
+    eprintln!("obstacles: a scan of 640 beams {min:.3} ms CPU");
     // A debug build is ten times slower.
-    assert!(least < 5.0, "{least}");
+    assert!(min < 5.0, "{min}");
 }

@@ -29,7 +29,7 @@ const MAX_POSES: usize = 24;
 const REPLY_OVERHEAD_BYTES: usize = 32;
 
 /// A requested plan.
-struct Wanted {
+struct RequestedPlan {
     id: GoalId,
     start: Pose2,
     goal: Pose2,
@@ -65,12 +65,12 @@ struct Handler {
     handle: ActionHandle<ComputePathToPose>,
     active: ActiveGoal,
     frames: FrameNames,
-    plans: SyncSender<Wanted>,
+    plans: SyncSender<RequestedPlan>,
 }
 
 impl Handler {
     /// The request, or the result of a goal that fails.
-    fn wanted(&self, id: GoalId, goal: &Goal) -> Result<Wanted, GoalFailure> {
+    fn wanted(&self, id: GoalId, goal: &Goal) -> Result<RequestedPlan, GoalFailure> {
         if !PLANNER_IDS.contains(&goal.planner_id.as_str()) {
             let message = format!("planner_id is '{}', expected none or GridBased", goal.planner_id);
             return Err(GoalFailure::Failed(Outcome::INVALID_PLANNER, message));
@@ -82,7 +82,7 @@ impl Handler {
         let in_map = |pose: &PoseStamped| in_map(pose, &self.frames, Some(&*view));
         let start = if goal.use_start { in_map(&goal.start)? } else { view.estimate.pose };
         let at = self.active.clock().to_ros(view.stamp);
-        Ok(Wanted { id, start, goal: in_map(&goal.goal)?, map, at })
+        Ok(RequestedPlan { id, start, goal: in_map(&goal.goal)?, map, at })
     }
 }
 
@@ -125,11 +125,11 @@ impl GoalHandler<ComputePathToPose> for Handler {
 /// Makes the plans one after the other, until the node ends.
 fn plan_all(
     mut planner: Planner,
-    plans: &Receiver<Wanted>,
+    plans: &Receiver<RequestedPlan>,
     handle: &ActionHandle<ComputePathToPose>,
     frame: &str,
 ) {
-    for Wanted { id, start, goal, map, at } in plans {
+    for RequestedPlan { id, start, goal, map, at } in plans {
         let started = Instant::now();
         let plan = planner.plan(&map.grid, start, Twist2::ZERO, goal);
         let planning_time = stamp::duration(started.elapsed().as_secs_f64());

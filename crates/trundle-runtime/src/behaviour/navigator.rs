@@ -145,7 +145,7 @@ impl Navigator {
     /// Updates the data that all states share: zones, the opening, and the checks of pose, progress and view.
     fn prepare(&mut self, s: &WorldState<'_>) {
         if self.tools.planner.take_zones(s) {
-            self.tools.schedule.check_due.hurry();
+            self.tools.schedule.check_due.make_due();
         }
         self.tools.opening.start(s.now);
         self.machine.prepare(&mut self.tools, s);

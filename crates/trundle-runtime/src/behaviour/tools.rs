@@ -111,7 +111,7 @@ impl Tools {
         self.contacts.restart();
         self.view_monitor.restart();
         self.goal_approach.reset();
-        self.schedule.check_due.hurry();
+        self.schedule.check_due.make_due();
         if !rolls_on {
             self.follower.halt();
         }

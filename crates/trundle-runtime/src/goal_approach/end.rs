@@ -59,7 +59,7 @@ impl fmt::Display for ApproachFailure {
 
 fn write_positioner_reason(reason: &PositionerReason, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     match reason {
-        PositionerReason::Obstacle(by) => write!(f, "{by} is in the way while settling"),
+        PositionerReason::Obstacle(by) => write!(f, "{by} is in the way during the final approach"),
         PositionerReason::NoWay(Some(by)) => {
             write!(f, "no turns and straight moves lead to the goal: {by} is in the way")
         }

@@ -27,7 +27,7 @@ pub struct GoalApproachReport {
 
 /// Activity of the positioner in the last step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Doing {
+enum PositionerActivity {
     #[default]
     Standing,
     Planning,
@@ -41,7 +41,7 @@ pub(super) struct Notes {
     pub report: GoalApproachReport,
     /// Number of successive stops without a completed motion.
     pub stops: u32,
-    last: Doing,
+    last: PositionerActivity,
 }
 
 impl Notes {
@@ -56,26 +56,30 @@ impl Notes {
     pub fn interrupted(&mut self) {
         self.stops += 1;
         self.report.restarts += 1;
-        self.last = Doing::Standing;
+        self.last = PositionerActivity::Standing;
     }
 
     /// Counts the result of a step.
     pub fn note(&mut self, step: &PositionerReport) {
         let doing = match step.reason {
-            PositionerReason::Moving(_) => Doing::Moving,
-            PositionerReason::Planning => Doing::Planning,
+            PositionerReason::Moving(_) => PositionerActivity::Moving,
+            PositionerReason::Planning => PositionerActivity::Planning,
             PositionerReason::NoWay(_) | PositionerReason::Refused(_) | PositionerReason::BadPose => {
-                Doing::Waiting
+                PositionerActivity::Waiting
             }
             PositionerReason::Measuring | PositionerReason::Obstacle(_) | PositionerReason::Settled => {
-                Doing::Standing
+                PositionerActivity::Standing
             }
         };
         let began = |what| doing == what && self.last != what;
-        let (plans, moves, waits) = (began(Doing::Planning), began(Doing::Moving), began(Doing::Waiting));
+        let (plans, moves, waits) = (
+            began(PositionerActivity::Planning),
+            began(PositionerActivity::Moving),
+            began(PositionerActivity::Waiting),
+        );
         // The result reveals a plan that was ready in the first step.
-        let at_once =
-            (moves || (waits && step.reason != PositionerReason::BadPose)) && self.last != Doing::Planning;
+        let at_once = (moves || (waits && step.reason != PositionerReason::BadPose))
+            && self.last != PositionerActivity::Planning;
         self.report.plans += u32::from(plans || at_once);
         self.report.motions += u32::from(moves);
         self.report.waits += u32::from(waits);
@@ -86,7 +90,7 @@ impl Notes {
                 self.stops += 1;
             }
             // The motion is completed.
-            (PositionerReason::Measuring, Doing::Moving) => self.stops = 0,
+            (PositionerReason::Measuring, PositionerActivity::Moving) => self.stops = 0,
             _ => {}
         }
         self.last = doing;

@@ -234,8 +234,8 @@ fn no_step_takes_longer_than_two_milliseconds() {
         let planner = DockingConfig { method, ..standard.planner.clone() };
         let config = GoalApproachConfig { planner, ..standard };
         let runs: Vec<Vec<f64>> = (0..5).map(|_| times_of_steps(&config, &footprint, grid, ends)).collect();
-        let least = |i: usize| runs.iter().map(|run| run[i]).fold(f64::INFINITY, f64::min);
-        let worst = (0..runs[0].len()).map(least).fold(0.0, f64::max);
+        let min = |i: usize| runs.iter().map(|run| run[i]).fold(f64::INFINITY, f64::min);
+        let worst = (0..runs[0].len()).map(min).fold(0.0, f64::max);
         eprintln!("{method:?}: {} steps, the longest {worst:.2} ms", runs[0].len());
         assert!(runs.iter().all(|run| run.len() == runs[0].len()), "as many steps every time");
         assert!(runs[0].len() > 405, "{method:?}: {} steps, a search in parts", runs[0].len());

@@ -15,7 +15,7 @@ pub struct MissionExecutorConfig {
     /// Time without progress after which a goal is given up, s, 1 to 3600. Progress is a fall of the rest of the path by 15 cm, or an
     /// observation of unseen floor on it. Default 75: longer than a person stands in a door.
     pub patience: f64,
-    /// What the robot does if an obstacle blocks its path: `detour`: another path of any length, and the end of the goal after the patience;
+    /// Behaviour if an obstacle blocks the path: `detour`: another path of any length, and the end of the goal after the patience;
     /// `wait`: a wait without a limit of time, in place of a much longer path around an obstacle on floor that was seen free. Default
     /// `detour`.
     pub when_blocked: WhenBlocked,

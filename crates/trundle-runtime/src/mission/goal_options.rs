@@ -1,4 +1,4 @@
-//! What counts as the arrival at a goal, and what the robot does if the path to it is blocked.
+//! Tolerances of a goal's arrival, and the behaviour if the path to the goal is blocked.
 
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose2, require_in};
@@ -29,12 +29,12 @@ pub struct GoalOptions {
     /// robot turns exactly to the heading.
     #[serde(default, rename = "heading_tolerance_rad", skip_serializing_if = "Option::is_none")]
     pub heading_tolerance: Option<f64>,
-    /// What the robot does if an obstacle blocks its path. `None`: `mission_executor.when_blocked`.
+    /// Behaviour if an obstacle blocks the path. `None`: `mission_executor.when_blocked`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub when_blocked: Option<WhenBlocked>,
 }
 
-/// What the robot does if an obstacle blocks its path.
+/// Behaviour if an obstacle blocks the path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]

@@ -40,8 +40,8 @@ impl LightSearch {
             .filter(|at| is_clear(grid, *at))
             .min_by(|a, b| distance(a).total_cmp(&distance(b)));
         self.place = place;
-        let way = place? - here;
-        place.map(|at| Pose2::new(at.x, at.y, way.y.atan2(way.x)))
+        let offset = place? - here;
+        place.map(|at| Pose2::new(at.x, at.y, offset.y.atan2(offset.x)))
     }
 }
 
@@ -61,9 +61,9 @@ fn is_searched_from(grid: &OccupancyGrid, searched: Vector2, at: Vector2) -> boo
 
 /// Whether no occupied cell is between two points.
 fn is_in_sight(grid: &OccupancyGrid, from: Vector2, to: Vector2) -> bool {
-    let (way, step) = (to - from, grid.geometry().resolution);
-    let count = (way.norm() / step).ceil().max(1.0);
-    (0..=count as usize).all(|i| grid.at(from + way * (i as f64 / count)) != Cell::Occupied)
+    let (offset, step) = (to - from, grid.geometry().resolution);
+    let count = (offset.norm() / step).ceil().max(1.0);
+    (0..=count as usize).all(|i| grid.at(from + offset * (i as f64 / count)) != Cell::Occupied)
 }
 
 /// Whether all cells around a point are free.

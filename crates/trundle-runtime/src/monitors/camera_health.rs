@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn a_camera_that_says_the_same_for_seconds_is_frozen_though_the_robot_rests() {
+    fn a_camera_that_repeats_its_image_for_seconds_is_frozen_even_at_rest() {
         let mut camera_health = CameraHealth::default();
         let frozen = |camera_health: &mut CameraHealth, time| {
             camera_health.is_frozen(&image_at(time, 1.0), Pose2::IDENTITY)

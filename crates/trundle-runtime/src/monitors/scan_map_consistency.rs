@@ -94,9 +94,9 @@ fn judged(grid: &OccupancyGrid, origin: Vector2, end: Vector2) -> Option<bool> {
     if about(end).any(|cell| cell == Cell::Occupied) {
         return Some(true);
     }
-    let (way, step) = (end - origin, grid.geometry().resolution);
-    let count = ((way.norm() - HIT_TOLERANCE_M).max(0.0) / step) as usize;
-    let mut on_the_way = (0..count).map(|i| origin + way * (i as f64 * step / way.norm()));
+    let (offset, step) = (end - origin, grid.geometry().resolution);
+    let count = ((offset.norm() - HIT_TOLERANCE_M).max(0.0) / step) as usize;
+    let mut on_the_way = (0..count).map(|i| origin + offset * (i as f64 * step / offset.norm()));
     let is_behind = on_the_way.any(|point| grid.at(point) == Cell::Occupied);
     // Unknown cells may contain the beginning of a wall.
     let is_clear = || grid.at(end) == Cell::Free && about(end).all(|cell| cell == Cell::Free);

@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_takes_what_is_put_in_after_the_control_thread_has_gone() {
+    fn inputs_after_the_end_of_the_control_thread_are_dropped() {
         let inbox: Inbox<u32> = Inbox::new(4);
         let sender = inbox.sender();
         drop(inbox);

@@ -123,10 +123,10 @@ impl LoopTimer {
             jitter_median_ms: self.jitter.quantile(0.5)?,
             jitter_p99_ms: self.jitter.quantile(0.99)?,
             jitter_p999_ms: self.jitter.quantile(0.999)?,
-            jitter_most_ms: self.jitter.most()?,
+            jitter_most_ms: self.jitter.max()?,
             response_median_ms: self.responses.quantile(0.5)?,
             response_p999_ms: self.responses.quantile(0.999)?,
-            response_most_ms: self.responses.most()?,
+            response_most_ms: self.responses.max()?,
             missed_deadlines: self.missed,
         })
     }

@@ -23,12 +23,12 @@ pub(super) struct Background {
     /// Settings changed during a decision job.
     pub(super) changes: Vec<RunSetting>,
     /// Readings of bumper and cliff sensors during a decision job.
-    pub(super) felt: Vec<Felt>,
+    pub(super) contact_readings: Vec<ContactReading>,
 }
 
 /// A reading of a bumper or cliff sensor.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Felt {
+pub(super) enum ContactReading {
     Touched(bool),
     OverEdge(bool),
 }
@@ -68,6 +68,6 @@ impl Background {
 
     /// Whether readings or a mission arrived that a running decision job does not include.
     pub(super) fn knows_more(&self) -> bool {
-        !self.felt.is_empty() || self.orders.is_some()
+        !self.contact_readings.is_empty() || self.orders.is_some()
     }
 }

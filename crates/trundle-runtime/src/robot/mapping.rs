@@ -91,8 +91,8 @@ impl GridMapping {
         self.matcher.refine(self.mapper.mapper(), scan, guess)
     }
 
-    /// Uncertainty of the grid at a pose that is matched by a scan.
-    pub(super) fn uncertainty_at(&self, pose: Pose2, scan: &Scan) -> PoseUncertainty {
+    /// Uncertainty of the grid at a pose that is matched by a scan; `None` where nothing was drawn.
+    pub(super) fn uncertainty_at(&self, pose: Pose2, scan: &Scan) -> Option<PoseUncertainty> {
         self.uncertainty.at(pose, scan.hits().map(|hit| pose.transform(hit)))
     }
 

@@ -53,13 +53,10 @@ impl Robot {
         let stamp = scan.stamp();
         let guess = self.localizer.pose_at(stamp).ok()?;
         let found = self.times.measure(Stage::ScanMatch, || self.mapping.matched(scan, guess))?;
+        let map = self.mapping.uncertainty_at(found.pose, scan)?;
         let before = self.localizer.estimate().pose;
-        self.localizer.correct_scan(&ScanPose {
-            stamp,
-            map_from_base: found.pose,
-            covariance: found.covariance,
-            map: self.mapping.uncertainty_at(found.pose, scan),
-        });
+        let (map_from_base, covariance) = (found.pose, found.covariance);
+        self.localizer.correct_scan(&ScanPose { stamp, map_from_base, covariance, map });
         event_log::correction(stamp, "the scan match", before, self.localizer.estimate().pose);
         Some(PlanarMeasurement { stamp, pose: found.pose, covariance: found.covariance })
     }

@@ -1,6 +1,6 @@
 //! Steering by the decision worker, by the fallback controller during a decision job, or by an operator.
 
-use super::background::{Background, Felt};
+use super::background::{Background, ContactReading};
 use super::event_log;
 use crate::world_state::WorldState;
 use crate::{
@@ -125,10 +125,10 @@ impl Steering {
         if let Some(sent) = sent.or(fallback.map(|fallback| fallback.sent)) {
             decision_worker.navigator.sent(sent);
         }
-        for felt in self.background.felt.drain(..) {
-            match felt {
-                Felt::Touched(pressed) => decision_worker.navigator.touch(pressed),
-                Felt::OverEdge(over_edge) => decision_worker.navigator.cliff(over_edge),
+        for contact_readings in self.background.contact_readings.drain(..) {
+            match contact_readings {
+                ContactReading::Touched(pressed) => decision_worker.navigator.touch(pressed),
+                ContactReading::OverEdge(over_edge) => decision_worker.navigator.cliff(over_edge),
             }
         }
         let navigator = &mut decision_worker.navigator;
@@ -153,7 +153,7 @@ impl Steering {
         self.teleop.touched = pressed;
         match &mut self.decision_worker {
             Some(decision_worker) => decision_worker.navigator.touch(pressed),
-            None => self.background.felt.push(Felt::Touched(pressed)),
+            None => self.background.contact_readings.push(ContactReading::Touched(pressed)),
         }
         if let Some(fallback) = &mut self.background.fallback {
             fallback.touched = pressed;
@@ -165,7 +165,7 @@ impl Steering {
         self.teleop.over_edge = over_edge;
         match &mut self.decision_worker {
             Some(decision_worker) => decision_worker.navigator.cliff(over_edge),
-            None => self.background.felt.push(Felt::OverEdge(over_edge)),
+            None => self.background.contact_readings.push(ContactReading::OverEdge(over_edge)),
         }
         if let Some(fallback) = &mut self.background.fallback {
             fallback.over_edge = over_edge;

@@ -64,7 +64,7 @@ fn a_scan_without_odometry_gives_safety_nothing() {
 }
 
 #[test]
-fn what_shows_the_motion_depends_on_the_wheels_and_on_the_sensor() {
+fn the_source_of_motion_depends_on_wheels_and_sensor() {
     let now = Stamp::default().after(10.0);
     let sense = |sight, is_stuck: bool, located: Option<f64>| {
         let mut robot = Robot::new(RobotConfig { sight, ..RobotConfig::default() }).unwrap();

@@ -3,8 +3,10 @@
 use serde_json::Value;
 
 /// Prefixes of former names and of the present ones; longer prefixes come first.
-const FORMER_NAMES: [(&str, &str); 7] = [
+const FORMER_NAMES: [(&str, &str); 9] = [
     ("supervisor", "mission_executor"),
+    ("wheel_way_noise", "wheel_distance_noise"),
+    ("way_noise", "distance_noise"),
     ("least_way", "min_distance"),
     ("least_room", "min_clearance"),
     ("most_ahead", "max_lead"),
@@ -55,6 +57,10 @@ mod tests {
         assert_eq!(
             present("supervisor.explore.least_gain").as_deref(),
             Some("mission_executor.explore.min_gain")
+        );
+        assert_eq!(
+            present("odometry.way_noise_m_per_sqrt_m").as_deref(),
+            Some("odometry.distance_noise_m_per_sqrt_m")
         );
         assert_eq!(present("docking.max_work"), None);
         assert_eq!(present("mostly.speed"), None);

@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_schema_knows_every_key_with_its_default() {
+    fn the_schema_has_every_key_with_its_default() {
         let schema = json_schema();
         let radius = &schema["properties"]["drive"]["properties"]["wheel_radius_m"];
         assert_eq!(radius["type"], "number");

@@ -105,7 +105,7 @@ fn answers_in_the_same_places_give_the_same_reports() {
 }
 
 #[test]
-fn of_images_that_nobody_has_time_for_the_newest_is_kept() {
+fn an_overloaded_worker_gets_the_newest_image() {
     let mut robot = with_background_jobs();
     // Images at 0, 0.1, ... 0.9 s: the first is processed until 0.52 s, then that of 0.5 s until 1.04 s.
     live(&mut robot, 1.0, 1.0, after(0.52, 0.0));

@@ -1,4 +1,4 @@
-//! Events of the body besides motion and images: what each does to a robot on its way to a goal.
+//! Events of the body besides motion and images: the effect of each on a robot that drives to a goal.
 
 use crate::robot::{Base, robot, wall};
 use nalgebra::Matrix3;

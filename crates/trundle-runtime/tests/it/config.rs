@@ -22,7 +22,7 @@ fn the_defaults_are_valid_and_wrong_keys_are_named() {
 }
 
 #[test]
-fn outlines_are_checked_and_a_base_is_not_faster_than_its_odometry_believes() {
+fn outlines_are_checked_and_a_base_is_not_faster_than_the_limit_of_its_odometry() {
     let field = |config: RobotConfig| config.validated().unwrap_err().field;
     let mut flat = RobotConfig::default();
     flat.footprint = Some(vec![[0.0, 0.0], [1.0, 0.0]]);

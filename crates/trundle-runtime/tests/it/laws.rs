@@ -107,7 +107,7 @@ fn another_goal_on_the_way_is_driven_to_without_a_stop() {
 }
 
 #[test]
-fn a_checkpoint_made_on_the_way_keeps_the_task_at_hand_and_those_behind_it() {
+fn a_checkpoint_made_during_a_task_keeps_this_task_and_the_following_ones() {
     let tasks = vec![Task::go(Pose2::new(1.8, 0.0, 0.0)), Task::Explore, Task::Return];
     let mut robot = Robot::new(RobotConfig::default()).unwrap();
     robot.begin(&Mission::new(tasks.clone()).unwrap());
@@ -210,7 +210,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn whatever_sensors_say_in_whatever_order_commands_are_numbers_within_the_limits(
+    fn for_any_sensor_events_commands_are_finite_and_within_the_limits(
         events in prop::collection::vec(any_event(), 1..120),
     ) {
         let mut robot = laser_robot();

@@ -119,13 +119,13 @@ fn driven() -> (Robot, Base) {
 #[test]
 fn a_robot_drops_what_belongs_to_its_old_map_and_finds_itself_in_the_new_one() {
     let (mut robot, mut base) = driven();
-    let report = robot.obey(OperatorCommand::LoadMap(Box::new(room(0.05)))).unwrap();
+    let report = robot.execute(OperatorCommand::LoadMap(Box::new(room(0.05)))).unwrap();
     assert!(report.map_replaced);
     assert!(robot.tasks_left().unwrap().is_empty() && robot.annotations().places.is_empty());
     assert_eq!(robot.grid().at(Vector2::new(3.0, 0.0)), Cell::Occupied, "the new map");
     assert!(robot.estimate().covariance[(0, 0)] > 1.0, "the pose is unknown");
     let goal = Pose2::new(0.4, 1.0, 1.0);
-    robot.obey(OperatorCommand::Begin(Mission::new(vec![Task::go(goal)]).unwrap())).unwrap();
+    robot.execute(OperatorCommand::Begin(Mission::new(vec![Task::go(goal)]).unwrap())).unwrap();
     run(&mut robot, &mut base, 2.0, 90.0);
     let truth = START * base.pose();
     let off = truth.inverse() * robot.estimate().pose;
@@ -140,7 +140,7 @@ fn a_map_of_other_cells_is_refused_and_the_robot_goes_on_with_its_own() {
     robot.drive_to(goal).unwrap();
     run(&mut robot, &mut base, 2.0, 0.2);
     let before = robot.grid().clone();
-    let report = robot.obey(OperatorCommand::LoadMap(Box::new(room(0.1)))).unwrap();
+    let report = robot.execute(OperatorCommand::LoadMap(Box::new(room(0.1)))).unwrap();
     assert!(!report.map_replaced && *robot.grid() == before);
     assert_eq!((robot.tasks_left().unwrap().len(), robot.annotations().places.len()), (1, 1));
     run(&mut robot, &mut base, 2.2, 10.0);
@@ -156,17 +156,17 @@ fn a_broken_image_of_the_old_map_gives_no_pose_in_the_new_one() {
     let robot = Robot::new(config).unwrap();
     let (mut robot, mut base) = (robot.with_background_jobs().with_checkpoints(), Base::default());
     run_with_jobs(&mut robot, &mut base, 0.0, 1.0);
-    robot.obey(OperatorCommand::LoadMap(Box::new(room(0.05)))).unwrap();
+    robot.execute(OperatorCommand::LoadMap(Box::new(room(0.05)))).unwrap();
     run_with_jobs(&mut robot, &mut base, 1.0, 1.0);
     robot.queue_image(LazyImage::new(Stamp::from_nanos(1_900_000_000), || Err("broken".to_owned())));
     let job = robot.next_job().unwrap();
-    let report = robot.obey(OperatorCommand::LoadMap(Box::new(shifted_room(SHIFT_M)))).unwrap();
+    let report = robot.execute(OperatorCommand::LoadMap(Box::new(shifted_room(SHIFT_M)))).unwrap();
     assert!(report.map_replaced && report.checkpoint.is_none(), "the visual map is with the job");
     let report = robot.apply_answer(job.run());
     assert_eq!(report.broken_image.as_deref(), Some("broken"));
     assert_eq!(report.checkpoint.unwrap().grid, *robot.grid());
     let mission = Mission::new(vec![Task::go(Pose2::new(SHIFT_M + 0.4, 1.0, 1.0))]).unwrap();
-    robot.obey(OperatorCommand::Begin(mission)).unwrap();
+    robot.execute(OperatorCommand::Begin(mission)).unwrap();
     run_with_jobs(&mut robot, &mut base, 2.0, 60.0);
     let truth = Pose2::new(SHIFT_M, 0.0, 0.0) * START * base.pose();
     let estimate = robot.estimate();
@@ -187,7 +187,7 @@ fn a_docked_robot_knows_its_station_in_the_new_map_only_once_it_knows_its_pose()
     };
     robot.step(&charging(2));
     assert!(robot.station().is_some());
-    robot.obey(OperatorCommand::LoadMap(Box::new(room(0.05)))).unwrap();
+    robot.execute(OperatorCommand::LoadMap(Box::new(room(0.05)))).unwrap();
     robot.step(&charging(2));
     assert!(robot.station().is_none(), "at an unknown pose");
     let charging_ends =
@@ -197,7 +197,7 @@ fn a_docked_robot_knows_its_station_in_the_new_map_only_once_it_knows_its_pose()
         kind: BodyEventKind::Battery(charging_ends),
     }));
     robot
-        .obey(OperatorCommand::Begin(Mission::new(vec![Task::go(Pose2::new(0.4, 1.0, 1.0))]).unwrap()))
+        .execute(OperatorCommand::Begin(Mission::new(vec![Task::go(Pose2::new(0.4, 1.0, 1.0))]).unwrap()))
         .unwrap();
     run(&mut robot, &mut base, 2.0, 60.0);
     robot.step(&charging(62));
@@ -214,7 +214,7 @@ fn a_robot_that_drives_brakes_as_it_obeys_and_its_checkpoint_has_the_new_map_and
     run(&mut robot, &mut base, 0.0, 2.0);
     let speed = base.twist().v;
     assert!(speed > 0.05, "{speed}");
-    let report = robot.obey(OperatorCommand::LoadMap(Box::new(room(0.05)))).unwrap();
+    let report = robot.execute(OperatorCommand::LoadMap(Box::new(room(0.05)))).unwrap();
     let twist = report.twist.unwrap();
     assert!(twist.v <= speed, "{twist:?} after {speed} m/s");
     let checkpoint = report.checkpoint.unwrap();

@@ -28,7 +28,7 @@ pub fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
 pub struct Base {
     command: Twist2,
     pose: Pose2,
-    ways: (f64, f64),
+    lengths: (f64, f64),
 }
 
 impl Base {
@@ -37,9 +37,9 @@ impl Base {
         let drive = DifferentialDrive::KOBUKI;
         let (left, right) = drive.wheel_speeds(self.command);
         self.pose = self.pose.advance(self.command, 0.02);
-        self.ways = (self.ways.0 + left * 0.02, self.ways.1 + right * 0.02);
-        let ticks = |way: f64| ((way / drive.metres_per_tick()) as i64).rem_euclid(65_536) as u16;
-        let wheels = WheelTicks { stamp, left: ticks(self.ways.0), right: ticks(self.ways.1) };
+        self.lengths = (self.lengths.0 + left * 0.02, self.lengths.1 + right * 0.02);
+        let ticks = |length: f64| ((length / drive.metres_per_tick()) as i64).rem_euclid(65_536) as u16;
+        let wheels = WheelTicks { stamp, left: ticks(self.lengths.0), right: ticks(self.lengths.1) };
         [SensorEvent::Gyro(GyroRate { stamp, omega: self.command.omega }), SensorEvent::Wheels(wheels)]
     }
 
@@ -123,7 +123,7 @@ fn it_starts_when_the_path_is_in_view_and_stops_when_images_stop() {
 }
 
 #[test]
-fn wheels_that_count_nothing_stop_it_where_no_image_tells_how_it_moves() {
+fn wheels_that_count_nothing_stop_it_without_a_visual_motion() {
     let mut robot = robot(Pose2::new(1.0, 0.0, 0.0));
     let reports = stand(&mut robot, 4.0, |stamp| Some(wall(stamp, 3.0)));
     let driven: f64 = reports.iter().map(|report| report.twist.unwrap().v * 0.02).sum();
@@ -136,8 +136,8 @@ fn wheels_that_count_nothing_stop_it_where_no_image_tells_how_it_moves() {
         last.state
     );
     let sigma = |report: &StepReport| report.estimate.unwrap().covariance[(0, 0)].sqrt();
-    let most = reports.iter().map(sigma).fold(0.0, f64::max);
-    assert!((0.5 * driven..3.0 * driven).contains(&most), "{most} m after {driven} m that nobody counted");
+    let max = reports.iter().map(sigma).fold(0.0, f64::max);
+    assert!((0.5 * driven..3.0 * driven).contains(&max), "{max} m after {driven} m that nobody counted");
 }
 
 #[test]
@@ -226,7 +226,7 @@ fn a_camera_robot_takes_no_scan_for_sight() {
 }
 
 #[test]
-fn a_resumed_robot_knows_its_map_and_not_its_pose_and_maps_nothing_meanwhile() {
+fn a_resumed_robot_has_its_map_and_maps_nothing_until_its_pose_is_known() {
     let mut first = robot(Pose2::new(1.0, 0.0, 0.0)).with_checkpoints();
     let memory = (0..300)
         .filter_map(|i| {

@@ -9,7 +9,7 @@ use super::world_view::WorldView;
 use trundle_core::PinholeCamera;
 
 /// Lower bound of the cosines of incidence. Source: ours.
-const LEAST_COSINE: f32 = 1e-3;
+const MIN_COSINE: f32 = 1e-3;
 
 /// All surfaces in one image.
 pub(super) struct Picture<'a> {
@@ -89,7 +89,7 @@ impl Picture<'_> {
             let seen = Footprints::new(&patch, inverse_depth, row, &length);
             for (i, w) in inverse_depth.iter().enumerate().take(end).skip(at) {
                 line.depth[i] = 1.0 / w;
-                line.cosine[i] = seen.cosine[i].clamp(LEAST_COSINE, 1.0);
+                line.cosine[i] = seen.cosine[i].clamp(MIN_COSINE, 1.0);
                 line.color[i] = color(&patch, &seen, i);
             }
             at = end;

@@ -4,7 +4,7 @@
 
 use super::rays::{Linear, Rays};
 use super::tile::{ROWS, TILE_COLUMNS, Tile, mask, smaller};
-use crate::world::{BLOCK, Block};
+use crate::world::{Block, TRIANGLES_PER_BLOCK};
 
 /// Records the triangles of a block where they are nearest. `apex` is the camera's centre in their frame, ids are `id` and the following
 /// numbers. `floor` is the smallest inverse depth in the tile. Returns whether any pixel may have changed.
@@ -24,7 +24,7 @@ pub(super) fn meet_block(
 ) -> bool {
     let setups = Setups::new(rays, apex, block, floor);
     let mut is_changed = false;
-    for lane in 0..BLOCK {
+    for lane in 0..TRIANGLES_PER_BLOCK {
         if setups.is_seen[lane] != 0 {
             is_changed = true;
             let [a, b, c, inverse_depth] = &setups.functions;
@@ -57,13 +57,17 @@ fn meet_one(a: Linear, b: Linear, c: Linear, inverse_depth: Linear, id: u32, til
 /// [`Linear`] functions, one a triangle.
 #[derive(Clone, Copy)]
 struct Functions {
-    start: [f32; BLOCK],
-    right: [f32; BLOCK],
-    down: [f32; BLOCK],
+    start: [f32; TRIANGLES_PER_BLOCK],
+    right: [f32; TRIANGLES_PER_BLOCK],
+    down: [f32; TRIANGLES_PER_BLOCK],
 }
 
 impl Functions {
-    const ZERO: Self = Self { start: [0.0; BLOCK], right: [0.0; BLOCK], down: [0.0; BLOCK] };
+    const ZERO: Self = Self {
+        start: [0.0; TRIANGLES_PER_BLOCK],
+        right: [0.0; TRIANGLES_PER_BLOCK],
+        down: [0.0; TRIANGLES_PER_BLOCK],
+    };
 
     #[inline(always)]
     fn of(&self, lane: usize) -> Linear {
@@ -82,16 +86,16 @@ impl Functions {
 struct Setups {
     functions: [Functions; 4],
     /// All bits set if the triangle may be visible in the tile.
-    is_seen: [u32; BLOCK],
+    is_seen: [u32; TRIANGLES_PER_BLOCK],
 }
 
 impl Setups {
     #[inline(always)]
     fn new(rays: &Rays, o: [f64; 3], block: &Block, floor: f32) -> Self {
         let [mut edge_bc, mut edge_ca, mut edge_ab, mut inverse_depth] = [Functions::ZERO; 4];
-        let mut is_seen = [0; BLOCK];
+        let mut is_seen = [0; TRIANGLES_PER_BLOCK];
         let [a, b, c] = &block.corners;
-        for i in 0..BLOCK {
+        for i in 0..TRIANGLES_PER_BLOCK {
             let a = [f64::from(a[0][i]) - o[0], f64::from(a[1][i]) - o[1], f64::from(a[2][i]) - o[2]];
             let b = [f64::from(b[0][i]) - o[0], f64::from(b[1][i]) - o[1], f64::from(b[2][i]) - o[2]];
             let c = [f64::from(c[0][i]) - o[0], f64::from(c[1][i]) - o[1], f64::from(c[2][i]) - o[2]];
@@ -107,10 +111,10 @@ impl Setups {
                 ((bc[1] + ca[1] + ab[1]) * inverse) as f32,
                 ((bc[2] + ca[2] + ab[2]) * inverse) as f32,
             ]);
-            is_seen[i] = mask(bc_along.most() >= 0.0)
-                & mask(ca_along.most() >= 0.0)
-                & mask(ab_along.most() >= 0.0)
-                & mask(plane.most() > floor)
+            is_seen[i] = mask(bc_along.max() >= 0.0)
+                & mask(ca_along.max() >= 0.0)
+                & mask(ab_along.max() >= 0.0)
+                & mask(plane.max() > floor)
                 & mask(volume != 0.0);
             edge_bc.set(i, bc_along);
             edge_ca.set(i, ca_along);

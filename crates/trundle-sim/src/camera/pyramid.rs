@@ -36,7 +36,7 @@ impl Pyramid {
             corner(x1, y1),
             corner(-OUTER_MARGIN_PX, y1),
         ];
-        let slack = RELATIVE_ROUNDING * (extent + apex.iter().fold(0.0, |most, x| x.abs().max(most)));
+        let slack = RELATIVE_ROUNDING * (extent + apex.iter().fold(0.0, |max, x| x.abs().max(max)));
         let sides = [0, 1, 2, 3].map(|i| {
             let normal = cross(edges[i], edges[(i + 1) % 4]);
             (normal, slack * (normal[0].abs() + normal[1].abs() + normal[2].abs()))
@@ -55,12 +55,12 @@ impl Probe for Pyramid {
         for i in 0..WIDTH {
             let low = [node.low[0][i] - apex[0], node.low[1][i] - apex[1], node.low[2][i] - apex[2]];
             let high = [node.high[0][i] - apex[0], node.high[1][i] - apex[1], node.high[2][i] - apex[2]];
-            let depth = -most([-axis[0], -axis[1], -axis[2]], low, high) - slack;
-            let is_met = (most(axis, low, high) + slack > 0.0)
-                & (most(left, low, high) + left_slack >= 0.0)
-                & (most(right, low, high) + right_slack >= 0.0)
-                & (most(top, low, high) + top_slack >= 0.0)
-                & (most(bottom, low, high) + bottom_slack >= 0.0);
+            let depth = -max([-axis[0], -axis[1], -axis[2]], low, high) - slack;
+            let is_met = (max(axis, low, high) + slack > 0.0)
+                & (max(left, low, high) + left_slack >= 0.0)
+                & (max(right, low, high) + right_slack >= 0.0)
+                & (max(top, low, high) + top_slack >= 0.0)
+                & (max(bottom, low, high) + bottom_slack >= 0.0);
             let depth = if depth > 0.0 { depth } else { 0.0 };
             distances[i] = if is_met { depth } else { f32::INFINITY };
         }
@@ -68,9 +68,9 @@ impl Probe for Pyramid {
     }
 }
 
-/// The most of `normal . place` over a box.
+/// The maximum of `normal . place` over a box.
 #[inline(always)]
-fn most(normal: [f32; 3], low: [f32; 3], high: [f32; 3]) -> f32 {
+fn max(normal: [f32; 3], low: [f32; 3], high: [f32; 3]) -> f32 {
     let part = |k: usize| {
         let (a, b) = (normal[k] * low[k], normal[k] * high[k]);
         if a > b { a } else { b }

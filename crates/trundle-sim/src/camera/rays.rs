@@ -72,9 +72,9 @@ impl Linear {
         if left > right { left } else { right }
     }
 
-    /// The most in the tile: exactly the value of one of its corners.
+    /// The maximum in the tile: exactly the value of one of its corners.
     #[inline(always)]
-    pub(super) fn most(&self) -> f32 {
+    pub(super) fn max(&self) -> f32 {
         let (upper, lower) = (self.max_in_row(0), self.max_in_row(ROWS - 1));
         if upper > lower { upper } else { lower }
     }

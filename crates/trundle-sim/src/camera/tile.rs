@@ -41,22 +41,22 @@ impl Tile {
     /// Depth of the farthest pixel, m; infinite while a pixel is empty.
     #[inline(always)]
     pub(super) fn reach(&self) -> f32 {
-        let mut least = self.inverse_depth[0];
+        let mut min = self.inverse_depth[0];
         for row in 1..ROWS {
             for i in 0..TILE_COLUMNS {
                 let w = self.inverse_depth[row][i];
-                least[i] = if w < least[i] { w } else { least[i] };
+                min[i] = if w < min[i] { w } else { min[i] };
             }
         }
         // Halves, which makes this SIMD too.
         let mut width = TILE_COLUMNS / 2;
         while width > 0 {
             for i in 0..width {
-                least[i] = if least[i + width] < least[i] { least[i + width] } else { least[i] };
+                min[i] = if min[i + width] < min[i] { min[i + width] } else { min[i] };
             }
             width /= 2;
         }
-        1.0 / least[0]
+        1.0 / min[0]
     }
 
     /// Records the nearer surfaces of a row, for pixels with all bits of `is_met` set.

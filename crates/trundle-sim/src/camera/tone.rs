@@ -14,10 +14,10 @@ impl Tone {
         Self(Box::new(std::array::from_fn(|level| {
             let light = f64::from(linear_from_srgb(level as u8));
             let sigma = noise.sigma(light, gain);
-            let said = light * gain;
+            let measured = light * gain;
             // The curve of sRGB carries noise over: half of what one sigma up and down make.
-            let spread = (srgb(said + sigma) - srgb(said - sigma)) / 2.0;
-            (srgb(said) as f32, spread as f32)
+            let spread = (srgb(measured + sigma) - srgb(measured - sigma)) / 2.0;
+            (srgb(measured) as f32, spread as f32)
         })))
     }
 
@@ -40,7 +40,7 @@ mod tests {
     use crate::camera::Exposure;
     use crate::rng::hash;
 
-    fn said(noise: &ColorNoise, gain: f64, color: [u8; 3]) -> Vec<[f64; 3]> {
+    fn measured(noise: &ColorNoise, gain: f64, color: [u8; 3]) -> Vec<[f64; 3]> {
         let (tone, normals) = (Tone::new(noise, gain), NormalTable::shared());
         (0..20_000).map(|i| tone.measure(color, hash(3, i), normals).map(f64::from)).collect()
     }
@@ -61,7 +61,7 @@ mod tests {
     fn spread_is_that_of_photons_and_reading_through_the_curve_and_channels_are_independent() {
         let noise = ColorNoise { exposure: Exposure::fixed(1.0), ..ColorNoise::default() };
         for level in [40, 128, 200] {
-            let values = said(&noise, 1.0, [level; 3]);
+            let values = measured(&noise, 1.0, [level; 3]);
             let center = mean(values.iter().map(|v| v[1]));
             let variance = mean(values.iter().map(|v| (v[1] - center).powi(2)));
             let light = f64::from(linear_from_srgb(level));
@@ -73,15 +73,15 @@ mod tests {
             let covariance = mean(values.iter().map(|v| (v[0] - center) * (v[2] - center)));
             assert!(covariance.abs() < 0.03 * variance, "{covariance}");
         }
-        assert!((said(&noise, 1.0, [128; 3]).len() as f64 - 20_000.0).abs() < 1.0);
+        assert!((measured(&noise, 1.0, [128; 3]).len() as f64 - 20_000.0).abs() < 1.0);
     }
 
     #[test]
     fn gain_brightens_and_clips() {
         let noise = ColorNoise::default();
-        let dark = mean(said(&noise, 4.0, [60; 3]).iter().map(|v| v[0]));
+        let dark = mean(measured(&noise, 4.0, [60; 3]).iter().map(|v| v[0]));
         let light = f64::from(linear_from_srgb(60));
         assert!((dark - srgb(4.0 * light)).abs() < 0.3, "{dark}");
-        assert!(said(&noise, 4.0, [220; 3]).iter().all(|v| v[0] == 255.0));
+        assert!(measured(&noise, 4.0, [220; 3]).iter().all(|v| v[0] == 255.0));
     }
 }

@@ -53,9 +53,9 @@ fn sectors(config: &StationConfig, bearing: f64) -> [bool; 3] {
 /// Whether the line between the station and a receiver is free (world frame, m).
 pub(super) fn is_in_sight(snapshot: &SceneSnapshot<'_>, station: Pose2, receiver: Vector2) -> bool {
     let from = station.transform(Vector2::new(EMITTER_OFFSET_M, 0.0));
-    let way = receiver - from;
+    let offset = receiver - from;
     let origin = Vector3::new(from.x, from.y, LIGHT_HEIGHT_M);
-    snapshot.cast(origin, Vector3::new(way.x, way.y, 0.0), 1.0).is_none()
+    snapshot.cast(origin, Vector3::new(offset.x, offset.y, 0.0), 1.0).is_none()
 }
 
 #[cfg(test)]

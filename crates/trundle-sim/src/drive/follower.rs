@@ -122,20 +122,20 @@ impl WaypointFollower {
     /// Twist for the true pose `world_from_base`. Must be called at 20 Hz or more.
     pub fn step(&mut self, stamp: Stamp, pose: Pose2) -> Twist2 {
         let Following::Driving { waypoint } = self.state else { return Twist2::ZERO };
-        let wish = self.wish(pose, self.waypoints[waypoint]);
+        let target = self.target(pose, self.waypoints[waypoint]);
         if self.is_stuck(stamp, pose) {
             self.state = Following::Blocked { waypoint };
         }
         if !matches!(self.state, Following::Driving { .. }) {
             return Twist2::ZERO;
         }
-        let twist = self.ramped(stamp, wish);
+        let twist = self.ramped(stamp, target);
         self.last = Some((stamp, twist));
         twist
     }
 
     /// The twist without limits of acceleration; selects the next phase at the end of one.
-    fn wish(&mut self, pose: Pose2, goal: Pose2) -> Twist2 {
+    fn target(&mut self, pose: Pose2, goal: Pose2) -> Twist2 {
         match self.phase {
             Phase::Plan => {
                 self.phase = plan(pose, goal);
@@ -200,37 +200,37 @@ impl WaypointFollower {
         stamp - since > self.config.patience
     }
 
-    fn ramped(&self, stamp: Stamp, wish: Twist2) -> Twist2 {
+    fn ramped(&self, stamp: Stamp, target: Twist2) -> Twist2 {
         let (since, before) = self.last.unwrap_or((stamp, Twist2::ZERO));
         let elapsed = (stamp - since).clamp(0.0, 0.1);
-        let ramp = |from: f64, to: f64, most: f64| from + (to - from).clamp(-most * elapsed, most * elapsed);
+        let ramp = |from: f64, to: f64, max: f64| from + (to - from).clamp(-max * elapsed, max * elapsed);
         // Braking is twice as fast, which makes the speeds of `approach` feasible.
         let c = &self.config;
-        let most = |from: f64, to: f64, rate: f64| if to.abs() < from.abs() { 2.0 * rate } else { rate };
+        let max = |from: f64, to: f64, rate: f64| if to.abs() < from.abs() { 2.0 * rate } else { rate };
         Twist2::new(
-            ramp(before.v, wish.v, most(before.v, wish.v, c.acceleration)),
-            ramp(before.omega, wish.omega, most(before.omega, wish.omega, c.angular_acceleration)),
+            ramp(before.v, target.v, max(before.v, target.v, c.acceleration)),
+            ramp(before.omega, target.omega, max(before.omega, target.omega, c.angular_acceleration)),
         )
     }
 }
 
 fn plan(pose: Pose2, goal: Pose2) -> Phase {
-    let way = goal.position() - pose.position();
-    let distance = way.norm();
+    let offset = goal.position() - pose.position();
+    let distance = offset.norm();
     if distance < POSITION_TOLERANCE_M {
         return Phase::Turn { heading: goal.theta, then: None };
     }
-    let direction = way / distance;
+    let direction = offset / distance;
     let is_behind = distance < BACK_UP_M && direction.dot(&pose.direction()) < 0.0;
     let sense = if is_behind { -1.0 } else { 1.0 };
     let heading = (sense * direction.y).atan2(sense * direction.x);
     Phase::Turn { heading, then: Some(Line { direction, sense }) }
 }
 
-/// The speed to cover `left` (signed) at, at most `most`, that braking by `rate` can still stop.
-fn approach(left: f64, most: f64, rate: f64) -> f64 {
+/// The speed to cover `left` (signed) at, at most `max`, that braking by `rate` can still stop.
+fn approach(left: f64, max: f64, rate: f64) -> f64 {
     let brake = (2.0 * rate * left.abs()).sqrt().min(APPROACH_GAIN_PER_S * left.abs());
-    left.signum() * brake.min(most)
+    left.signum() * brake.min(max)
 }
 
 #[cfg(test)]

@@ -141,7 +141,7 @@ impl FaultSchedule {
         Ok(self)
     }
 
-    /// Whether the camera ever freezes.
+    /// Whether a freeze of the camera is scheduled.
     pub(crate) fn freezes_camera(&self) -> bool {
         self.faults.iter().any(|fault| fault.kind == FaultKind::CameraFrozen)
     }

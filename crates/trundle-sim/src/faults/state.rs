@@ -84,11 +84,11 @@ impl Faults {
 
     /// State of a stuck bumper.
     pub(crate) fn bumper(&self) -> Option<bool> {
-        let said = |(_, kind)| match kind {
+        let reported = |(_, kind)| match kind {
             FaultKind::BumperStuck { pressed } => Some(pressed),
             _ => None,
         };
-        self.holding().filter_map(said).last()
+        self.holding().filter_map(reported).last()
     }
 
     /// Ticks by which the encoders jump now, left and right; each jump is returned once.

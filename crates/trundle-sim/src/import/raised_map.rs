@@ -44,7 +44,7 @@ pub struct RaisedMap {
     pub wall_height: f64,
     /// Whether the world has a ceiling. Default true.
     pub ceiling: bool,
-    /// Most memory that the world's textures may take, GB, 0.01 to 1000. Default 4.
+    /// Maximum memory that the world's textures may take, GB, 0.01 to 1000. Default 4.
     pub max_memory_gb: f64,
 }
 

@@ -59,7 +59,7 @@ impl Drivetrain {
                 (self.heard, self.target) = (due, target);
             }
         }
-        if self.timeout_steps.is_some_and(|most| self.now - self.heard >= most) {
+        if self.timeout_steps.is_some_and(|max| self.now - self.heard >= max) {
             self.target = [0.0; 2];
         }
         self.now += 1;

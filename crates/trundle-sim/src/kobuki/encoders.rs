@@ -8,18 +8,18 @@ pub(super) struct Encoders {
     drive: DifferentialDrive,
     start: (u16, u16),
     /// Distance of each wheel since the start, m, of wheels of nominal radius.
-    way: (f64, f64),
+    distance: (f64, f64),
 }
 
 impl Encoders {
     /// Counters with the value `start`.
     pub(super) fn new(drive: DifferentialDrive, start: (u16, u16)) -> Self {
-        Self { drive, start, way: (0.0, 0.0) }
+        Self { drive, start, distance: (0.0, 0.0) }
     }
 
     /// Adds a motion of the wheels, m, as of wheels of nominal radius.
     pub(super) fn roll(&mut self, left: f64, right: f64) {
-        self.way = (self.way.0 + left, self.way.1 + right);
+        self.distance = (self.distance.0 + left, self.distance.1 + right);
     }
 
     /// Adds ticks to the counters without a motion: a fault.
@@ -30,11 +30,11 @@ impl Encoders {
 
     /// The counters: whole ticks, without the fraction.
     pub(super) fn read(&self) -> (u16, u16) {
-        let count = |start: u16, way: f64| {
-            let ticks = (way / self.drive.metres_per_tick()).floor() as i64;
+        let count = |start: u16, distance: f64| {
+            let ticks = (distance / self.drive.metres_per_tick()).floor() as i64;
             start.wrapping_add(ticks as u16)
         };
-        (count(self.start.0, self.way.0), count(self.start.1, self.way.1))
+        (count(self.start.0, self.distance.0), count(self.start.1, self.distance.1))
     }
 }
 

@@ -17,8 +17,8 @@ const TEXEL_MULTIPLE: usize = 16;
 /// Grain of every size, which gives corners at 1 m as well as at 6 m.
 const GRAIN: Fractal = Fractal { wavelength: 0.64, octaves: 7, gain: 0.82 };
 
-/// Most texels of one face; larger faces get coarser texels. Source: ours.
-const MOST_TEXELS: f64 = 4e6;
+/// Maximum number of texels of one face; larger faces get coarser texels. Source: ours.
+const MAX_TEXELS: f64 = 4e6;
 
 /// Faces of a solid: which of [`Finish::faces`], width and height, m.
 fn faces(shape: &Shape) -> Vec<(usize, f64, f64)> {
@@ -62,7 +62,7 @@ pub(super) fn texels_of_face(paint: Paint, (width, height): (f64, f64), coarse: 
     if let Paint::Flat { .. } = paint {
         return (1, 1);
     }
-    let texel = (texel_of(paint) * coarse).max((width * height / MOST_TEXELS).sqrt());
+    let texel = (texel_of(paint) * coarse).max((width * height / MAX_TEXELS).sqrt());
     let texels =
         |length: f64| ((length / texel / TEXEL_MULTIPLE as f64).ceil() as usize).max(1) * TEXEL_MULTIPLE;
     (texels(width), texels(height))

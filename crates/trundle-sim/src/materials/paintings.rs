@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::ops::Index;
 
 /// Texels of a world, about 5.4 bytes each with their mip levels; beyond, all texels get coarser. Source: ours.
-const MOST_TEXELS: usize = 40_000_000;
+const MAX_TEXELS: usize = 40_000_000;
 
 /// The painted faces of every solid of a world. Equal solids (equal sizes, equal finishes with a seed) share one set, so repeated furniture
 /// is free.
@@ -46,9 +46,9 @@ impl Index<usize> for Paintings {
     }
 }
 
-/// Factor on the width of texels that limits their number to [`MOST_TEXELS`].
+/// Factor on the width of texels that limits their number to [`MAX_TEXELS`].
 fn coarseness(texels: usize) -> f64 {
-    (texels as f64 / MOST_TEXELS as f64).sqrt().max(1.0)
+    (texels as f64 / MAX_TEXELS as f64).sqrt().max(1.0)
 }
 
 /// Exact seed and size: the key by which appearances are compared.
@@ -135,6 +135,6 @@ mod tests {
         // 100 walls, 8 x 4 m each, at 5 mm would be 128 million.
         let coarse = coarseness(100 * texels(1.0));
         let all = 100 * texels(coarse);
-        assert!((0.9..1.1).contains(&(all as f64 / MOST_TEXELS as f64)), "{all} texels");
+        assert!((0.9..1.1).contains(&(all as f64 / MAX_TEXELS as f64)), "{all} texels");
     }
 }

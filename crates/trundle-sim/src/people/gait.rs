@@ -37,11 +37,11 @@ impl Gait {
         self.swing
     }
 
-    /// The gait after `elapsed` s and a walked distance of `way` m; `is_walking`: whether the person continues.
-    pub(super) fn after(self, elapsed: f64, way: f64, is_walking: bool) -> Self {
+    /// The gait after `elapsed` s and a walked distance of `distance` m; `is_walking`: whether the person continues.
+    pub(super) fn after(self, elapsed: f64, distance: f64, is_walking: bool) -> Self {
         let change = if is_walking { elapsed / EASE_DURATION_S } else { -elapsed / EASE_DURATION_S };
         Self {
-            phase: (self.phase + way / (2.0 * self.step)).fract(),
+            phase: (self.phase + distance / (2.0 * self.step)).fract(),
             swing: (self.swing + change).clamp(0.0, 1.0),
             ..self
         }
@@ -71,12 +71,12 @@ mod tests {
     fn the_standing_foot_stays_and_the_other_overtakes_it() {
         let mut gait = Gait { swing: 1.0, ..Gait::new(1.2) };
         assert!((gait.step - 0.679).abs() < 1e-3);
-        let (mut way, mut longest) = (0.0, 0.0_f64);
+        let (mut distance, mut longest) = (0.0, 0.0_f64);
         for _ in 0..4000 {
-            let before = gait.legs(1.0).map(|shin| way + shin.x);
+            let before = gait.legs(1.0).map(|shin| distance + shin.x);
             gait = gait.after(1e-3, 1.2e-3, true);
-            way += 1.2e-3;
-            let after = gait.legs(1.0).map(|shin| way + shin.x);
+            distance += 1.2e-3;
+            let after = gait.legs(1.0).map(|shin| distance + shin.x);
             let moved = [0, 1].map(|k| after[k] - before[k]);
             assert!(moved[0].abs().min(moved[1].abs()) < 3e-5, "{moved:?} at {}", gait.phase);
             assert!(moved.iter().all(|m| *m > -1e-9 && *m < 3.7e-3), "{moved:?}");
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn who_stands_has_feet_side_by_side() {
+    fn a_standing_person_has_feet_side_by_side() {
         let [left, right] = Gait::new(1.0).legs(1.0);
         assert_eq!((left.x, right.x, left.y, right.y), (0.0, 0.0, 0.1, -0.1));
     }

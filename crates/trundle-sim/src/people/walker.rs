@@ -29,9 +29,9 @@ impl Walker {
     /// Standing at the first way-point, facing the second.
     pub(super) fn new(person: &Person) -> Self {
         let first = point(person, 0);
-        let way = person.waypoints.get(1).map_or(Vector2::x(), |_| point(person, 1) - first);
+        let direction = person.waypoints.get(1).map_or(Vector2::x(), |_| point(person, 1) - first);
         Self {
-            pose: Pose2::new(first.x, first.y, way.y.atan2(way.x)),
+            pose: Pose2::new(first.x, first.y, direction.y.atan2(direction.x)),
             gait: Gait::new(person.speed),
             target: 1,
             is_returning: false,
@@ -45,16 +45,16 @@ impl Walker {
         if self.is_done || self.rest > 0.0 {
             return Self { rest: (self.rest - elapsed).max(0.0), ..self.stand(elapsed) };
         }
-        let way = point(person, self.target) - self.pose.position();
-        let distance = way.norm();
+        let direction = point(person, self.target) - self.pose.position();
+        let distance = direction.norm();
         if distance < ARRIVAL_TOLERANCE {
             return self.arrive(person).stand(elapsed);
         }
-        let turn = difference_of_angles(way.y.atan2(way.x), self.pose.theta);
+        let turn = difference_of_angles(direction.y.atan2(direction.x), self.pose.theta);
         if turn.abs() > ARRIVAL_TOLERANCE {
-            let most = TURN_RATE * elapsed;
+            let max = TURN_RATE * elapsed;
             let Pose2 { x, y, theta } = self.pose;
-            return Self { pose: Pose2::new(x, y, theta + turn.clamp(-most, most)), ..self.stand(elapsed) };
+            return Self { pose: Pose2::new(x, y, theta + turn.clamp(-max, max)), ..self.stand(elapsed) };
         }
         if is_free { self.walk(person, elapsed, distance) } else { self.stand(elapsed) }
     }
@@ -70,9 +70,9 @@ impl Walker {
     }
 
     fn walk(self, person: &Person, elapsed: f64, distance: f64) -> Self {
-        let way = (person.speed * self.gait.swing() * elapsed).min(distance);
-        let place = self.before(way);
-        let gait = self.gait.after(elapsed, way, true);
+        let direction = (person.speed * self.gait.swing() * elapsed).min(distance);
+        let place = self.before(direction);
+        let gait = self.gait.after(elapsed, direction, true);
         Self { pose: Pose2::new(place.x, place.y, self.pose.theta), gait, ..self }
     }
 

@@ -36,7 +36,7 @@ pub enum Corridor {
 /// straight path. Both poses are free for a Kobuki and for a robot of 0.6 x 0.4 m. `seed` varies textures and, by 2 cm, the crate.
 ///
 /// # Errors
-/// Never for any seed; the type is that of every scene.
+/// None for any seed; the result type is that of all scenes.
 pub fn corridor(kind: Corridor, seed: u64) -> Result<Scene, Invalid> {
     let mut build = Builder::new(seed);
     shell(&mut build);

@@ -31,7 +31,7 @@ const HIGH_TABLE: f64 = 0.72;
 /// and the furniture by some centimetres and degrees; the path is at least 0.8 m wide.
 ///
 /// # Errors
-/// Never for any seed; the type is that of every scene.
+/// None for any seed; the result type is that of all scenes.
 pub fn demo_room(seed: u64) -> Result<Scene, Invalid> {
     let mut build = Builder::new(seed);
     let door = 3.9 + build.jitter(0.12);

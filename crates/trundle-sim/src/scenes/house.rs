@@ -37,7 +37,7 @@ struct HouseMaterials {
 /// colours, and furniture by some centimetres and degrees; every room can be reached on paths 0.8 m wide.
 ///
 /// # Errors
-/// Never for any seed; the type is that of every scene.
+/// None for any seed; the result type is that of all scenes.
 pub fn house(seed: u64) -> Result<Scene, Invalid> {
     let mut build = Builder::new(seed);
     let materials = materials(&mut build);

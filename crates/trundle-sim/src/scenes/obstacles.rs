@@ -19,7 +19,7 @@ const PLACES: [(f64, f64); 8] =
 /// After the room with obstacles of \[Li18\], section 5. `seed` varies textures, sizes, turns and, by 5 cm, places.
 ///
 /// # Errors
-/// Never for any seed; the type is that of every scene.
+/// None for any seed; the result type is that of all scenes.
 pub fn obstacles(seed: u64) -> Result<Scene, Invalid> {
     let mut build = Builder::new(seed);
     walls(&mut build);

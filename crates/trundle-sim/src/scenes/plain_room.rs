@@ -31,7 +31,7 @@ const WAYPOINT_COUNT: usize = 3;
 /// box is in a corner. World frame: a corner at the origin.
 ///
 /// # Errors
-/// Never for any seed; the type is that of every scene.
+/// None for any seed; the result type is that of all scenes.
 pub fn plain_room(seed: u64, people: usize) -> Result<Scene, Invalid> {
     let mut build = Builder::new(seed);
     let length = between(&mut build, SIDE_RANGE_M);

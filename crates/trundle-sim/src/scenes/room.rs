@@ -16,7 +16,7 @@ const HALF_SIDE_M: f64 = 3.0;
 /// other starts a Kobuki is 0.42 m from the wall, too. The walls have much texture. `seed` varies textures and colours.
 ///
 /// # Errors
-/// Never for any seed; the type is that of every scene.
+/// None for any seed; the result type is that of all scenes.
 pub fn room(seed: u64) -> Result<Scene, Invalid> {
     let mut build = Builder::new(seed);
     let (low, high) = (-HALF_SIDE_M - WALL_THICKNESS_M, HALF_SIDE_M + WALL_THICKNESS_M);

@@ -38,7 +38,7 @@ const YELLOW: Paint = Paint::Marking { color: [226, 188, 44] };
 /// textures and colours, the goods in the racks, and the pallets on the floor.
 ///
 /// # Errors
-/// Never for any seed; the type is that of every scene.
+/// None for any seed; the result type is that of all scenes.
 pub fn warehouse(seed: u64) -> Result<Scene, Invalid> {
     let mut build = Builder::new(seed);
     shell(&mut build);

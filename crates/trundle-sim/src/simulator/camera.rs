@@ -12,7 +12,7 @@ use trundle_core::{Invalid, RgbdImage, SensorEvent, Stamp};
 
 /// The simulated camera, detached from its [`Simulator`] for another thread: it makes images of [`Shot`]s.
 #[derive(Debug)]
-pub struct CameraAside {
+pub struct DetachedCamera {
     rig: CameraRig,
     scene: Arc<Scene>,
 }
@@ -27,7 +27,7 @@ pub struct Shot {
     pub(super) fault: CameraFault,
 }
 
-impl CameraAside {
+impl DetachedCamera {
     /// The image of a shot, equal to the simulator's own image if all shots are taken in order.
     ///
     /// # Errors
@@ -57,8 +57,8 @@ impl Shot {
 
 impl Simulator {
     /// Detaches the camera: from now on images are not among the events, but are made from [`Simulator::shots`]. `None` the second time.
-    pub fn detach_camera(&mut self) -> Option<CameraAside> {
-        Some(CameraAside { rig: self.rig.take()?, scene: Arc::clone(&self.scene) })
+    pub fn detach_camera(&mut self) -> Option<DetachedCamera> {
+        Some(DetachedCamera { rig: self.camera.rig.take()?, scene: Arc::clone(&self.scene) })
     }
 
     /// Advances by one millisecond; returns the sensor events of that time, in order.
@@ -66,14 +66,14 @@ impl Simulator {
     /// # Errors
     /// As [`trundle_core::RobotBody::next_event`].
     pub fn advance(&mut self) -> Result<impl Iterator<Item = SensorEvent> + use<>, SimError> {
-        let before = std::mem::take(&mut self.queue);
+        let before = std::mem::take(&mut self.outgoing.queue);
         self.step();
         self.read_sensors()?;
-        Ok(before.into_iter().chain(std::mem::take(&mut self.queue)))
+        Ok(before.into_iter().chain(std::mem::take(&mut self.outgoing.queue)))
     }
 
     /// The shots since the last call, for the camera that was taken out.
     pub fn shots(&mut self) -> Vec<Shot> {
-        std::mem::take(&mut self.shots)
+        std::mem::take(&mut self.camera.shots)
     }
 }

@@ -9,20 +9,20 @@ use trundle_core::Pose2;
 pub(super) struct Track {
     /// The newest first.
     poses: VecDeque<Pose2>,
-    most: usize,
+    max: usize,
 }
 
 impl Track {
     /// A track over the last `seconds`; before its beginning the base was at `start`.
     pub(super) fn new(start: Pose2, seconds: f64) -> Self {
-        let most = (seconds * STEPS_PER_SECOND).ceil() as usize + 2;
-        Self { poses: VecDeque::from([start]), most }
+        let max = (seconds * STEPS_PER_SECOND).ceil() as usize + 2;
+        Self { poses: VecDeque::from([start]), max }
     }
 
     /// Appends the pose of the next step.
     pub(super) fn add(&mut self, pose: Pose2) {
         self.poses.push_front(pose);
-        self.poses.truncate(self.most);
+        self.poses.truncate(self.max);
     }
 
     /// Discards earlier poses: the base was moved to `pose`.

@@ -33,9 +33,9 @@ pub(crate) trait Probe {
 }
 
 impl Bvh {
-    /// A hierarchy over `boxes`, with at most `most` items per leaf.
-    pub(crate) fn new(boxes: &[Aabb], most: usize) -> Self {
-        let Tree { nodes, items, leaves } = build(boxes, most);
+    /// A hierarchy over `boxes`, with at most `max_items` items per leaf.
+    pub(crate) fn new(boxes: &[Aabb], max_items: usize) -> Self {
+        let Tree { nodes, items, leaves } = build(boxes, max_items);
         Self { nodes, items, leaves }
     }
 
@@ -124,17 +124,17 @@ mod tests {
     proptest! {
         #[test]
         fn walking_finds_exactly_what_a_scan_finds(
-            seeds in prop::collection::vec(any::<(u8, u8, u8)>(), 0..200), most in 1..5_usize, x in 0.1..33.9_f32,
+            seeds in prop::collection::vec(any::<(u8, u8, u8)>(), 0..200), max_items in 1..5_usize, x in 0.1..33.9_f32,
         ) {
             let boxes = boxes(&seeds);
-            let bvh = Bvh::new(&boxes, most);
+            let bvh = Bvh::new(&boxes, max_items);
             let point = Point([x, 7.3, 1.6]);
             let holds = |b: &Aabb| (0..3).all(|k| b.min[k] <= f64::from(point.0[k]) && f64::from(point.0[k]) <= b.max[k]);
             let mut found = Vec::new();
             let mut walk = bvh.walk();
             while let Some(leaf) = walk.next(&point, f32::INFINITY) {
                 let (first, end) = bvh.leaf(leaf);
-                assert!(end - first <= most);
+                assert!(end - first <= max_items);
                 found.extend(bvh.items()[first..end].iter().map(|&i| i as usize).filter(|&i| holds(&boxes[i])));
             }
             found.sort_unstable();

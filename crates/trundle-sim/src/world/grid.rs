@@ -34,9 +34,9 @@ impl World {
         let high = (self.bounds.max.xy() / resolution).map(f64::ceil);
         let size = (high - low).map(|n| n.max(1.0));
         if size.x * size.y > MOST_CELLS {
-            let least = ((self.bounds.max - self.bounds.min).xy().product() / MOST_CELLS).sqrt();
+            let min = ((self.bounds.max - self.bounds.min).xy().product() / MOST_CELLS).sqrt();
             let value = format!("{resolution} m, {:.3e} x {:.3e} cells", size.x, size.y);
-            let expected = format!("at most 2^31 cells: {least:.1e} m or more for this world");
+            let expected = format!("at most 2^31 cells: {min:.1e} m or more for this world");
             return Err(Invalid::new("resolution", value, "", expected));
         }
         GridGeometry::new(resolution, low * resolution, size.x as usize, size.y as usize)

@@ -1,6 +1,6 @@
 //! Intersection of a ray with a block of triangles.
 
-use super::triangles::{BLOCK, Block};
+use super::triangles::{Block, TRIANGLES_PER_BLOCK};
 use trundle_core::Vector3;
 
 /// Distance along a ray to each triangle of a block, in lengths of its direction; infinite for a miss.
@@ -8,10 +8,10 @@ use trundle_core::Vector3;
 /// The ray hits a triangle if it is on the same side of all three edges, by the sign of direction . (a x b). This sign is exactly opposite
 /// for the other triangle at the edge, so no ray passes between two triangles.
 #[inline(always)]
-pub(super) fn meet_block(block: &Block, origin: Vector3, direction: Vector3) -> [f64; BLOCK] {
-    let mut distances = [0.0; BLOCK];
+pub(super) fn meet_block(block: &Block, origin: Vector3, direction: Vector3) -> [f64; TRIANGLES_PER_BLOCK] {
+    let mut distances = [0.0; TRIANGLES_PER_BLOCK];
     let ([a, b, c], o, d) = (&block.corners, origin, direction);
-    for i in 0..BLOCK {
+    for i in 0..TRIANGLES_PER_BLOCK {
         let (ax, ay, az) = (f64::from(a[0][i]) - o.x, f64::from(a[1][i]) - o.y, f64::from(a[2][i]) - o.z);
         let (bx, by, bz) = (f64::from(b[0][i]) - o.x, f64::from(b[1][i]) - o.y, f64::from(b[2][i]) - o.z);
         let (cx, cy, cz) = (f64::from(c[0][i]) - o.x, f64::from(c[1][i]) - o.y, f64::from(c[2][i]) - o.z);

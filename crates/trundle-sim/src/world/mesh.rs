@@ -4,7 +4,7 @@ use trundle_core::{ColorImage, Invalid, Vector2};
 
 /// A surface of triangles with textured materials, world frame, m, z up.
 ///
-/// Surfaces are seen and touched from both sides. (u, v) are in texture widths and heights from the upper left corner and
+/// Both sides of a surface are visible and solid. (u, v) are in texture widths and heights from the upper left corner and
 /// repeat outside 0 to 1, as in glTF 2.0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {

@@ -36,7 +36,7 @@ use rayon::prelude::*;
 pub use scene_snapshot::SceneSnapshot;
 pub use shape::{Cuboid, Cylinder, Shape};
 use std::sync::OnceLock;
-pub(crate) use triangles::{BLOCK, Block, Triangles};
+pub(crate) use triangles::{Block, TRIANGLES_PER_BLOCK, Triangles};
 use trundle_core::{Invalid, Vector3};
 
 /// A static scene: frame `world`, z up, the floor's top at z = 0, metres.

@@ -3,7 +3,7 @@
 use super::region::Region;
 use trundle_core::Vector2;
 
-/// Most outlines of a leaf. Source: ours.
+/// Maximum number of outlines of a leaf. Source: ours.
 const LEAF_SIZE: usize = 4;
 
 /// Many outlines and a hierarchy of boxes over them: a nearest query takes O(log n).
@@ -145,15 +145,15 @@ impl Walls {
     /// No point of the hull of some corners is nearer than this, m.
     fn gap_of_corners(&self, corners: &[Vector2]) -> f64 {
         let (low, high) = Region { corners, radius: 0.0 }.box_of_corners();
-        let least = |out: &Vector2| corners.iter().map(|c| out.dot(c)).fold(f64::INFINITY, f64::min);
-        self.beyond(low, high, least)
+        let min = |out: &Vector2| corners.iter().map(|c| out.dot(c)).fold(f64::INFINITY, f64::min);
+        self.beyond(low, high, min)
     }
 
-    /// The maximum of the boxes' gap and of the distances outside each side; `least` is the smallest coordinate of the object along a
+    /// The maximum of the boxes' gap and of the distances outside each side; `min` is the smallest coordinate of the object along a
     /// normal.
-    fn beyond(&self, low: Vector2, high: Vector2, least: impl Fn(&Vector2) -> f64) -> f64 {
+    fn beyond(&self, low: Vector2, high: Vector2, min: impl Fn(&Vector2) -> f64) -> f64 {
         let gap = (low - self.high).sup(&(self.low - high)).sup(&Vector2::zeros()).norm();
-        let sides = self.sides[..self.count].iter().map(|(out, offset)| least(out) - offset);
+        let sides = self.sides[..self.count].iter().map(|(out, offset)| min(out) - offset);
         (sides.fold(gap, f64::max) - BOUND_SLACK_M).max(0.0)
     }
 }

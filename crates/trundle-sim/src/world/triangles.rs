@@ -5,9 +5,9 @@ use super::{Aabb, Bvh};
 use trundle_core::Vector3;
 
 /// Triangles of a [`Block`]. Source: ours.
-pub(crate) const BLOCK: usize = 4;
+pub(crate) const TRIANGLES_PER_BLOCK: usize = 4;
 
-/// The triangles of a world's meshes in the order of the leaves of a hierarchy: what rays meet.
+/// The triangles of a world's meshes in the order of the leaves of a hierarchy, for ray casts.
 #[derive(Debug)]
 pub(crate) struct Triangles {
     bvh: Bvh,
@@ -21,7 +21,7 @@ pub(crate) struct Triangles {
 /// The corners of up to four triangles, interleaved: corner, axis, triangle; world frame, m. Missing triangles are points.
 #[derive(Debug, Clone)]
 pub(crate) struct Block {
-    pub(crate) corners: [[[f32; BLOCK]; 3]; 3],
+    pub(crate) corners: [[[f32; TRIANGLES_PER_BLOCK]; 3]; 3],
     /// Index of the first triangle.
     pub(crate) first: u32,
 }
@@ -49,7 +49,7 @@ impl Triangles {
             .collect();
         let boxes: Vec<Aabb> =
             sources.iter().map(|&(m, t)| bounds(&meshes[m as usize].corners(t as usize))).collect();
-        let bvh = Bvh::new(&boxes, BLOCK);
+        let bvh = Bvh::new(&boxes, TRIANGLES_PER_BLOCK);
         let sources: Vec<(u32, u32)> = bvh.items().iter().map(|&item| sources[item as usize]).collect();
         let first_material: Vec<u32> = first_materials(meshes);
         let surfaces = sources
@@ -104,7 +104,7 @@ fn bounds(corners: &[[f32; 3]; 3]) -> Aabb {
 
 impl Block {
     fn new(meshes: &[Mesh], sources: &[(u32, u32)], (first, end): (usize, usize)) -> Self {
-        let mut block = Self { corners: [[[0.0; BLOCK]; 3]; 3], first: first as u32 };
+        let mut block = Self { corners: [[[0.0; TRIANGLES_PER_BLOCK]; 3]; 3], first: first as u32 };
         for (lane, &(mesh, triangle)) in sources[first..end].iter().enumerate() {
             for (i, corner) in meshes[mesh as usize].corners(triangle as usize).iter().enumerate() {
                 (0..3).for_each(|k| block.corners[i][k][lane] = corner[k]);

@@ -49,7 +49,7 @@ fn a_turn_blurs_the_colour_and_not_the_depth() {
 }
 
 #[test]
-fn who_stands_sees_as_sharp_as_ever() {
+fn a_camera_at_rest_has_no_blur() {
     let (sharp, still) = (image(0.0, 0.0, 2), image(0.05, 0.0, 2));
     assert!(sharp == still);
 }

@@ -36,9 +36,9 @@ impl Listener {
     fn roll(&mut self, ticks: WheelTicks) {
         if let Some(last) = self.last.replace(ticks) {
             let drive = DifferentialDrive::KOBUKI;
-            let way =
+            let distance =
                 |now: u16, before: u16| f64::from(now.wrapping_sub(before) as i16) * drive.metres_per_tick();
-            let twist = drive.twist(way(ticks.left, last.left), way(ticks.right, last.right));
+            let twist = drive.twist(distance(ticks.left, last.left), distance(ticks.right, last.right));
             self.odom = self.odom.advance(twist, 1.0);
         }
     }

@@ -180,9 +180,9 @@ fn stuck_encoders_repeat_themselves_while_the_robot_drives() {
     };
     let (stuck, whole) = (counters(&events), counters(&whole()));
     let last = stuck.iter().rfind(|(stamp, ..)| stamp.as_secs() < 1.0).unwrap();
-    for (said, true_ticks) in stuck.iter().zip(&whole) {
-        let expected = if is_during(said.0) { (said.0, last.1, last.2) } else { *true_ticks };
-        assert_eq!(*said, expected);
+    for (reported, true_ticks) in stuck.iter().zip(&whole) {
+        let expected = if is_during(reported.0) { (reported.0, last.1, last.2) } else { *true_ticks };
+        assert_eq!(*reported, expected);
     }
     assert_ne!((last.1, last.2), (whole[100].1, whole[100].2));
     assert!(robot.true_pose().x > -1.5, "the robot drives on");

@@ -312,7 +312,7 @@ fn bad_numbers_are_named() {
 }
 
 #[test]
-fn a_view_that_says_too_much_is_read_as_far_as_its_accessor_goes() {
+fn a_view_longer_than_its_accessor_is_read_to_the_accessors_end() {
     let whole = description(INDEXED, "", "");
     let json = whole.replace(r#""byteOffset":80,"byteLength":12"#, r#""byteOffset":80,"byteLength":24"#);
     let options = GltfOptions::default();
@@ -322,7 +322,7 @@ fn a_view_that_says_too_much_is_read_as_far_as_its_accessor_goes() {
 }
 
 #[test]
-fn a_file_cut_short_says_so() {
+fn a_file_cut_short_is_reported() {
     let whole = glb(&description(INDEXED, "", ""), &square());
     let cut = gltf_from_bytes("rug.glb", &whole[..whole.len() - 40], &GltfOptions::default(), &nowhere);
     let message = cut.unwrap_err().to_string();

@@ -21,8 +21,8 @@ struct Promise {
     seeds: u64,
     /// Free around a Kobuki at start and goal, m.
     clearance: f64,
-    /// Half of the width of the narrowest way, m.
-    way: f64,
+    /// Half of the width of the narrowest passage, m.
+    length: f64,
     /// Resolution of the true grid, m.
     resolution: f64,
     /// Reachable places near the goal.
@@ -30,18 +30,25 @@ struct Promise {
 }
 
 const PROMISES: [Promise; 10] = [
-    Promise { name: "demo", seeds: 30, clearance: 0.35, way: 0.40, resolution: 0.02, places: &[] },
-    Promise { name: "obstacles", seeds: 30, clearance: 0.35, way: 0.40, resolution: 0.02, places: &[] },
-    Promise { name: "room", seeds: 10, clearance: 0.40, way: 0.55, resolution: 0.02, places: &STABILISATION },
-    Promise { name: "corridor-a", seeds: 10, clearance: 0.12, way: 0.18, resolution: 0.02, places: &[] },
-    Promise { name: "corridor-b", seeds: 10, clearance: 0.12, way: 0.18, resolution: 0.02, places: &[] },
-    Promise { name: "corridor-c", seeds: 10, clearance: 0.12, way: 0.18, resolution: 0.02, places: &[] },
-    Promise { name: "corridor-d", seeds: 10, clearance: 0.12, way: 0.18, resolution: 0.02, places: &[] },
+    Promise { name: "demo", seeds: 30, clearance: 0.35, length: 0.40, resolution: 0.02, places: &[] },
+    Promise { name: "obstacles", seeds: 30, clearance: 0.35, length: 0.40, resolution: 0.02, places: &[] },
+    Promise {
+        name: "room",
+        seeds: 10,
+        clearance: 0.40,
+        length: 0.55,
+        resolution: 0.02,
+        places: &STABILISATION,
+    },
+    Promise { name: "corridor-a", seeds: 10, clearance: 0.12, length: 0.18, resolution: 0.02, places: &[] },
+    Promise { name: "corridor-b", seeds: 10, clearance: 0.12, length: 0.18, resolution: 0.02, places: &[] },
+    Promise { name: "corridor-c", seeds: 10, clearance: 0.12, length: 0.18, resolution: 0.02, places: &[] },
+    Promise { name: "corridor-d", seeds: 10, clearance: 0.12, length: 0.18, resolution: 0.02, places: &[] },
     Promise {
         name: "office",
         seeds: 12,
         clearance: 0.3,
-        way: 0.40,
+        length: 0.40,
         resolution: 0.04,
         // Inside of each of the six rooms.
         places: &[[3.5, 2.4], [8.7, 3.0], [13.5, 2.4], [3.75, 15.0], [8.75, 15.0], [13.6, 15.6]],
@@ -50,7 +57,7 @@ const PROMISES: [Promise; 10] = [
         name: "house",
         seeds: 12,
         clearance: 0.3,
-        way: 0.40,
+        length: 0.40,
         resolution: 0.025,
         // Bedroom, bath, study, hall, living room, kitchen.
         places: &[[4.2, 1.9], [1.3, 6.0], [4.3, 5.8], [4.0, 4.3], [8.4, 1.0], [7.6, 6.6]],
@@ -59,7 +66,7 @@ const PROMISES: [Promise; 10] = [
         name: "warehouse",
         seeds: 12,
         clearance: 0.35,
-        way: 0.40,
+        length: 0.40,
         resolution: 0.06,
         // Every aisle, the open area.
         places: &[[1.6, 15.0], [7.3, 15.0], [12.7, 15.0], [18.1, 15.0], [26.5, 14.5]],
@@ -78,10 +85,10 @@ fn check(promise: &Promise, seed: u64) {
         assert!(free >= promise.clearance, "{name} {seed}: {free} m at {pose:?}");
     }
     let grid = scene.world.true_grid(promise.resolution, band()).unwrap();
-    let reachable = ReachableFloor::new(&grid, promise.way, scene.start.position());
+    let reachable = ReachableFloor::new(&grid, promise.length, scene.start.position());
     let places = promise.places.iter().map(|[x, y]| Vector2::new(*x, *y));
     for place in places.chain([scene.goal.position()]) {
-        assert!(reachable.reaches(place), "{name} {seed}: {place} on ways of {} m", 2.0 * promise.way);
+        assert!(reachable.reaches(place), "{name} {seed}: {place} on ways of {} m", 2.0 * promise.length);
     }
 }
 

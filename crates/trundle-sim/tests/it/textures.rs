@@ -83,9 +83,9 @@ fn pictures_do_not_flicker() {
     let stage = SceneSnapshot { world: &world, movers: &[], lights: &Lights::default() };
     for heading in [std::f64::consts::PI, 2.0] {
         let at = |step: u32| {
-            let way = 0.0005 * f64::from(step);
+            let length = 0.0005 * f64::from(step);
             let mut view = renderer.blank();
-            let pose = Pose3::from_pose2(Pose2::new(3.0 - way, 0.5 + way, heading));
+            let pose = Pose3::from_pose2(Pose2::new(3.0 - length, 0.5 + length, heading));
             renderer.render(&stage, &(pose * camera_mount(0.0, 1.0, 0.0)), &mut view);
             // Outside the wall the image is empty.
             gray(&view)

@@ -85,12 +85,13 @@ impl CalibrationCheck {
     fn compare(&mut self, frame: &Frame, model: &ObservationModel) {
         let pair = self.anchor.as_ref().and_then(|anchor| pair_of(anchor, frame, model));
         if let Some(pair) = pair {
-            let (turn, way) = (pair.b_from_a.angle(), pair.b_from_a.translation.norm());
-            if turn < MIN_PAIR_TURN_RAD && way < MIN_PAIR_DISTANCE_M {
+            let (turn, distance) = (pair.b_from_a.angle(), pair.b_from_a.translation.norm());
+            if turn < MIN_PAIR_TURN_RAD && distance < MIN_PAIR_DISTANCE_M {
                 return;
             }
-            let said = self.moved.map(|moved| moved.translation.norm());
-            self.calibration_issues.extend(said.and_then(|said| self.travel.record(way, said)));
+            let reported = self.moved.map(|moved| moved.translation.norm());
+            self.calibration_issues
+                .extend(reported.and_then(|reported| self.travel.record(distance, reported)));
             self.pairs.push(pair);
         }
         self.anchor = Some(frame.clone());

@@ -39,7 +39,7 @@ pub(crate) struct FittedOffset {
     pub sigmas: CalibrationOffset,
 }
 
-/// Most iterations of Gauss-Newton: 10. Source: ours.
+/// Maximum number of iterations of Gauss-Newton: 10. Source: ours.
 const MAX_ITERATIONS: usize = 10;
 /// Relative decrease of the cost below which the iteration ends: 1e-6. Source: ours.
 const MIN_COST_DECREASE: f64 = 1e-6;

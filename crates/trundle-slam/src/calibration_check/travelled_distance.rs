@@ -14,20 +14,23 @@ const MAX_DISTANCE_RATIO: f64 = 1.5;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TravelledDistance {
     seen: f64,
-    said: f64,
+    reported: f64,
     judged: bool,
 }
 
 impl TravelledDistance {
     /// Records the length of a step by the camera and by the wheels, m; reports at most once.
-    pub fn record(&mut self, seen: f64, said: f64) -> Option<CalibrationIssue> {
+    pub fn record(&mut self, seen: f64, reported: f64) -> Option<CalibrationIssue> {
         self.seen += seen;
-        self.said += said;
-        if self.judged || self.said < MIN_WHEEL_DISTANCE_M || self.seen.max(self.said) < MIN_DISTANCE_M {
+        self.reported += reported;
+        if self.judged
+            || self.reported < MIN_WHEEL_DISTANCE_M
+            || self.seen.max(self.reported) < MIN_DISTANCE_M
+        {
             return None;
         }
         self.judged = true;
-        let ratio = self.seen / self.said;
+        let ratio = self.seen / self.reported;
         (!(1.0 / MAX_DISTANCE_RATIO..=MAX_DISTANCE_RATIO).contains(&ratio))
             .then_some(CalibrationIssue::TravelledDistance { ratio })
     }
@@ -40,10 +43,10 @@ mod tests {
     #[test]
     fn a_distance_five_times_as_long_is_reported_once() {
         let mut check = TravelledDistance::default();
-        let said: Vec<_> = (0..20).filter_map(|_| check.record(0.25, 0.05)).collect();
-        assert_eq!(said.len(), 1);
+        let reported: Vec<_> = (0..20).filter_map(|_| check.record(0.25, 0.05)).collect();
+        assert_eq!(reported.len(), 1);
         assert!(
-            matches!(said[0], CalibrationIssue::TravelledDistance { ratio } if (ratio - 5.0).abs() < 1e-9)
+            matches!(reported[0], CalibrationIssue::TravelledDistance { ratio } if (ratio - 5.0).abs() < 1e-9)
         );
         let mut check = TravelledDistance::default();
         assert_eq!((0..20).find_map(|_| check.record(0.055, 0.05)), None);

@@ -14,15 +14,15 @@ pub struct LocalMappingConfig {
     /// Number of keyframes that a local bundle adjustment moves, 1 or more. More take longer. Default 10 (ours): a landmark is in view for
     /// about as many.
     pub local_keyframes: usize,
-    /// Number of keyframes that a local bundle adjustment keeps fixed around the moved ones. More hold them more firmly and take longer.
-    /// Default 10.
+    /// Number of keyframes that a local bundle adjustment keeps fixed around the moved ones, 0 or more. More hold them more firmly and take longer.
+    /// Default 10 (ours).
     pub fixed_keyframes: usize,
-    /// Number of neighbouring keyframes in which the landmarks of a new keyframe are searched. More find more observations and take longer.
+    /// Number of neighbouring keyframes in which the landmarks of a new keyframe are searched, 0 or more. More find more observations and take longer.
     /// Default 10 \[MurArtal17\].
     pub fused_keyframes: usize,
-    /// Number of further keyframes after which a landmark seen by only one keyframe is removed. Default 3 \[MurArtal17\].
+    /// Number of further keyframes, 0 or more, after which a landmark seen by only one keyframe is removed. Default 3 \[MurArtal17\].
     pub trial_keyframes: usize,
-    /// Number of frames in which a landmark is expected before `found_ratio` is applied. Default 10.
+    /// Number of frames, 0 or more, in which a landmark is expected before `found_ratio` is applied. Default 10 (ours).
     pub trial_frames: u32,
     /// Smallest fraction of the frames where a landmark is expected in which it is found, 0 to 1. Below it the landmark is removed. Default
     /// 0.25 \[MurArtal17\].

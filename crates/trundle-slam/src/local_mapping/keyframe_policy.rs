@@ -24,9 +24,9 @@ pub struct KeyframeConfig {
     /// beyond twice the rotation any frame does. Default 0.35 (20 deg): a third of the image is new.
     pub max_rotation: f64,
     /// Fraction of the features with depth in areas without an expected landmark, 0 to 1, above which a frame becomes a keyframe. Expected
-    /// landmarks count, not found ones: a blurred frame finds few landmarks and would be a bad keyframe. Default 0.25.
+    /// landmarks count, not found ones: a blurred frame finds few landmarks and would be a bad keyframe. Default 0.25 (ours).
     pub new_ratio: f64,
-    /// Number of tracked landmarks below which a frame becomes a keyframe, if twice as many features have a depth. Default 50: tracking is
+    /// Number of tracked landmarks, 0 or more, below which a frame becomes a keyframe, if twice as many features have a depth. Default 50: tracking is
     /// about to fail.
     pub min_tracked: usize,
 }
@@ -60,7 +60,7 @@ impl KeyframeConfig {
 
     /// Whether a frame at `pose` that found `tracked` landmarks should become a keyframe. `shown` are the expected pixels of the map's
     /// landmarks, rectified px.
-    pub(crate) fn wants(
+    pub(crate) fn needs_keyframe(
         &self,
         frame: &Frame,
         pose: Pose3,
@@ -126,21 +126,21 @@ mod tests {
         let config = KeyframeConfig::default();
         let (map, _) = map_of_one_view(100);
         let frame = frame_with_depth(100);
-        let wants = |x: f64, turn: f64, tracked: usize, shown: usize| {
+        let needs_keyframe = |x: f64, turn: f64, tracked: usize, shown: usize| {
             let pose = Pose3::exp(Vector6::new(x, 0.0, 0.0, 0.0, turn, 0.0));
             let shown = frame.pixels[..shown].iter().copied();
-            config.wants(&frame, pose, tracked, shown, &map)
+            config.needs_keyframe(&frame, pose, tracked, shown, &map)
         };
-        assert!(!wants(0.02, 0.01, 5, 5), "blind but still");
-        assert!(!wants(0.1, 0.1, 90, 100), "moved, but the view is well known");
-        assert!(!wants(0.1, 0.1, 60, 100), "blurred, but the view is well known");
-        assert!(wants(0.1, 0.0, 60, 60), "a part of the view is new");
-        assert!(wants(0.1, 0.0, 40, 100), "about to get lost");
-        assert!(!wants(0.4, 0.4, 100, 100), "farther, but the view is well known");
-        assert!(wants(0.0, 0.4, 100, 70), "turned far");
-        assert!(wants(0.4, 0.0, 100, 70), "moved far");
-        assert!(wants(0.0, 0.8, 100, 100), "turned very far");
-        assert!(wants(0.7, 0.0, 100, 100), "moved very far");
+        assert!(!needs_keyframe(0.02, 0.01, 5, 5), "blind but still");
+        assert!(!needs_keyframe(0.1, 0.1, 90, 100), "moved, but the view is well known");
+        assert!(!needs_keyframe(0.1, 0.1, 60, 100), "blurred, but the view is well known");
+        assert!(needs_keyframe(0.1, 0.0, 60, 60), "a part of the view is new");
+        assert!(needs_keyframe(0.1, 0.0, 40, 100), "about to get lost");
+        assert!(!needs_keyframe(0.4, 0.4, 100, 100), "farther, but the view is well known");
+        assert!(needs_keyframe(0.0, 0.4, 100, 70), "turned far");
+        assert!(needs_keyframe(0.4, 0.0, 100, 70), "moved far");
+        assert!(needs_keyframe(0.0, 0.8, 100, 100), "turned very far");
+        assert!(needs_keyframe(0.7, 0.0, 100, 100), "moved very far");
     }
 
     #[test]

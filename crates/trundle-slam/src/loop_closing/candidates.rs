@@ -56,9 +56,9 @@ impl<'a> DriftBound<'a> {
     ) -> Self {
         let path = paths.to(old).unwrap_or_default();
         let (off, turned) = (path.translation_sigma.powi(2), path.rotation_sigma.powi(2));
-        let least = Vector6::new(off, off, off, turned, turned, turned);
+        let min = Vector6::new(off, off, off, turned, turned, turned);
         let grown = map.keyframe(new).covariance + map.keyframe(old).covariance;
-        Self { covariance: grown + Matrix6::from_diagonal(&least), config }
+        Self { covariance: grown + Matrix6::from_diagonal(&min), config }
     }
 
     /// Whether keyframes at this offset may see the same place.

@@ -29,7 +29,7 @@ pub struct LoopConfig {
     /// Largest correction that the drift does not explain, m, above 0, to 100. Default 1: wheels may slip by as much, and look-alike
     /// rooms are farther apart.
     pub max_correction: f64,
-    /// Largest rotation of a correction that the drift does not explain, rad, above 0, to pi. Default 0.5.
+    /// Largest rotation of a correction that the drift does not explain, rad, above 0, to pi. Default 0.5 (ours).
     pub max_correction_turn: f64,
     /// Smallest fraction of the matches that agree on the pose, 0 to 1. Default 0.5: chance matches stay below it.
     pub min_agreement: f64,
@@ -82,9 +82,9 @@ impl LoopConfig {
             ("loops.consistency", self.consistency, 1),
             ("loops.tied_by", self.tied_by, 1),
         ];
-        for (name, value, least) in counts {
-            if value < least {
-                return Err(Invalid::new(name, value, "", format!("{least} or more")));
+        for (name, value, min) in counts {
+            if value < min {
+                return Err(Invalid::new(name, value, "", format!("{min} or more")));
             }
         }
         for (name, value, unit, high) in [

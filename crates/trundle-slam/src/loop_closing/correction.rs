@@ -6,7 +6,7 @@ use crate::loop_closing::config::LoopConfig;
 use crate::loop_closing::essential_graph::essential_graph;
 use crate::loop_closing::place_verification::RecognizedPlace;
 use crate::map::landmark_map::LandmarkMap;
-use crate::motion::uncertain_pose::carried;
+use crate::motion::uncertain_pose::propagated;
 use crate::optimisation::map_optimisation::MapOptimisation;
 use trundle_core::Pose3;
 
@@ -39,7 +39,7 @@ impl LoopCorrection<'_> {
     fn set_covariance(&self, map: &mut LandmarkMap, keyframe: KeyframeId) {
         let (candidate, own) = (map.keyframe(self.place.candidate), map.keyframe(keyframe));
         let offset = candidate.visual_from_camera.inverse() * own.visual_from_camera;
-        let map_covariance = carried(&candidate.map_covariance, offset);
+        let map_covariance = propagated(&candidate.map_covariance, offset);
         map.set_covariances(keyframe, map_covariance + self.place.covariance, map_covariance);
     }
 }

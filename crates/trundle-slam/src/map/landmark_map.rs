@@ -236,11 +236,11 @@ impl LandmarkMap {
         seeing
     }
 
-    /// The other keyframes that share at least `least` landmarks with `keyframe`, the largest number first: its neighbours in
+    /// The other keyframes that share at least `min` landmarks with `keyframe`, the largest number first: its neighbours in
     /// the covisibility graph.
-    pub fn covisible(&self, keyframe: KeyframeId, least: usize) -> Vec<(KeyframeId, usize)> {
+    pub fn covisible(&self, keyframe: KeyframeId, min: usize) -> Vec<(KeyframeId, usize)> {
         let mut others = self.keyframes_seeing(self.keyframe(keyframe).landmarks.iter().flatten().copied());
-        others.retain(|(id, shared)| *id != keyframe && *shared >= least);
+        others.retain(|(id, shared)| *id != keyframe && *shared >= min);
         others
     }
 

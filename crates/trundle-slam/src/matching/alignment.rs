@@ -229,9 +229,9 @@ mod tests {
         let ((map, frame, pose, matches), model) = (tracked(), model());
         let mut found = aligned(&matches, pose, &frame, (&map, &model)).unwrap();
         let sigma = |found: &[PointMatch]| found[0].aligned.unwrap().sigma;
-        let said = sigma(&found);
-        assert!(!inflate_sigmas(&mut found, 0.7, &frame, &model) && sigma(&found) == said);
-        assert!(inflate_sigmas(&mut found, 2.0, &frame, &model) && sigma(&found) == 2.0 * said);
+        let reported = sigma(&found);
+        assert!(!inflate_sigmas(&mut found, 0.7, &frame, &model) && sigma(&found) == reported);
+        assert!(inflate_sigmas(&mut found, 2.0, &frame, &model) && sigma(&found) == 2.0 * reported);
         assert!(inflate_sigmas(&mut found, 99.0, &frame, &model) && sigma(&found) == 1.0);
     }
 

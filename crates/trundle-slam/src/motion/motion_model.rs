@@ -13,11 +13,11 @@ pub struct MotionModelConfig {
     /// the length, since errors of steps are independent \[Chong97\]. A larger value trusts images more than wheels. Default 0.05: wheels
     /// that slip occasionally.
     pub prior_part: f64,
-    /// Standard deviation that a motion prior gains in 1 s: m, and rad, 0 to 1. It grows with the root of the time. Default 0.01.
+    /// Standard deviation that a motion prior gains in 1 s: m, and rad, 0 to 1. It grows with the root of the time. Default 0.01 (ours).
     pub prior_drift: f64,
-    /// Standard deviation of the speed of a camera without a prior, m/s, and of its turn rate, rad/s, 0 to 100. Default 1.
+    /// Standard deviation of the speed of a camera without a prior, m/s, and of its turn rate, rad/s, 0 to 100. Default 1 (ours).
     pub unseen: f64,
-    /// Readout time of a camera that has none of its own, s. Deprecated: set the camera's readout time
+    /// Readout time of a camera that has none of its own, s, 0 to 0.05. Deprecated: set the camera's readout time
     /// ([`PinholeCamera::with_readout`]). Default 0.
     #[serde(skip_serializing_if = "is_zero")]
     pub readout: f64,

@@ -21,7 +21,7 @@ impl UncertainPose {
     /// `a_from_c`, where this is `a_from_b` and `next` is `b_from_c`; errors of the two are independent.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
-        let covariance = carried(&self.covariance, next.pose) + next.covariance;
+        let covariance = propagated(&self.covariance, next.pose) + next.covariance;
         Self { pose: (self.pose * next.pose).renormalized(), covariance }
     }
 }
@@ -34,7 +34,7 @@ pub(crate) fn of_sigmas(translation_sigma: f64, rotation_sigma: f64) -> Matrix6<
 
 /// The covariance of `a_from_b * motion` when that of `a_from_b` is `covariance` and the motion is exact; both as right
 /// perturbations.
-pub(crate) fn carried(covariance: &Matrix6<f64>, motion: Pose3) -> Matrix6<f64> {
+pub(crate) fn propagated(covariance: &Matrix6<f64>, motion: Pose3) -> Matrix6<f64> {
     let backward = motion.inverse().adjoint();
     backward * covariance * backward.transpose()
 }

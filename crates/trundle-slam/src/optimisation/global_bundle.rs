@@ -3,7 +3,7 @@
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::landmark_map::LandmarkMap;
-use crate::motion::uncertain_pose::carried;
+use crate::motion::uncertain_pose::propagated;
 use crate::optimisation::map_bundle::MapBundle;
 use std::collections::BTreeMap;
 use trundle_core::Pose3;
@@ -179,7 +179,7 @@ impl GlobalBundle {
             let map_covariance =
                 if seen[place] < usize::from(MIN_SHARED_LANDMARKS) { whole } else { map_covariance };
             let offset = holding.visual_from_camera.inverse() * keyframe.visual_from_camera;
-            let held = carried(&holding.covariance, offset);
+            let held = propagated(&holding.covariance, offset);
             map.set_covariances(*id, held + whole * factor, held + map_covariance * factor);
         }
     }

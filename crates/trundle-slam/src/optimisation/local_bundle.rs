@@ -167,7 +167,7 @@ mod tests {
         let mut bundle = bundle_around(&map, second, BundleSize { local: 10, fixed: 10 });
         bundle.begin(&map, &model, &BundleConfig::default(), BundleSolver::default());
         while !bundle.advance(usize::MAX) {}
-        // As culling does while a bundle runs.
+        // Keyframe culling removes landmarks during a bundle in the same way.
         map.unobserve(ids[2], first);
         apply(&mut map, &bundle, &model);
         for (id, truth) in [(own, points[0]), (ids[2], points[2])] {

@@ -95,10 +95,10 @@ impl<'a> Reader<'a> {
         self.u64().map(f64::from_bits)
     }
 
-    /// A count of elements of at least `least` bytes each; the rest of the bytes must be able to hold them.
-    pub fn count(&mut self, least: usize) -> Read<usize> {
+    /// A count of elements of at least `min` bytes each; the rest of the bytes must be able to hold them.
+    pub fn count(&mut self, min: usize) -> Read<usize> {
         let count = self.u32()? as usize;
-        if count.saturating_mul(least) > self.rest.len() {
+        if count.saturating_mul(min) > self.rest.len() {
             return Err(MapFileError::Cut { within: self.within });
         }
         Ok(count)

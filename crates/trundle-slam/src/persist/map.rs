@@ -109,11 +109,11 @@ fn read_covariance(bytes: &mut Reader, name: &str) -> Result<Matrix6<f64>, MapFi
     for entry in covariance.iter_mut() {
         *entry = bytes.length(name)?;
     }
-    let least = ((covariance + covariance.transpose()) / 2.0).symmetric_eigenvalues().min();
+    let min = ((covariance + covariance.transpose()) / 2.0).symmetric_eigenvalues().min();
     let size = covariance.amax();
-    let is_one = (covariance - covariance.transpose()).amax() <= MAX_ASYMMETRY * size
-        && least >= -MAX_ASYMMETRY * size;
-    bytes.require(is_one, name, format!("eigenvalue {least:e}"), || {
+    let is_one =
+        (covariance - covariance.transpose()).amax() <= MAX_ASYMMETRY * size && min >= -MAX_ASYMMETRY * size;
+    bytes.require(is_one, name, format!("eigenvalue {min:e}"), || {
         "symmetric, eigenvalues of 0 or more".to_owned()
     })?;
     Ok(covariance)

@@ -16,7 +16,7 @@ pub(crate) fn write_all(out: &mut Writer, reference_patches: &[ReferencePatch]) 
 
 pub(crate) fn read_all(bytes: &mut Reader) -> Result<Vec<ReferencePatch>, MapFileError> {
     let count = usize::from(bytes.u8()?);
-    bytes.require(count <= MAX_REFERENCE_PATCHES, "looks of a landmark", count, || {
+    bytes.require(count <= MAX_REFERENCE_PATCHES, "reference patches of a landmark", count, || {
         format!("at most {MAX_REFERENCE_PATCHES}")
     })?;
     let mut reference_patches = Vec::with_capacity(count);
@@ -35,6 +35,6 @@ fn read(bytes: &mut Reader) -> Result<ReferencePatch, MapFileError> {
         image: patch,
         right: bytes.vector("pixel of a patch")?,
         down: bytes.vector("pixel of a patch")?,
-        toward_camera: bytes.direction("direction of a look")?,
+        toward_camera: bytes.direction("viewing direction of a reference patch")?,
     })
 }

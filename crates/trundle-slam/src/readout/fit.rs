@@ -6,7 +6,7 @@ use trundle_core::{Pose3, Vector2, Vector3};
 
 /// Fewest image pairs of an estimate: 12. Fewer do not show their scatter. Source: ours.
 const MIN_PAIRS: usize = 12;
-/// Most iterations: 10. Source: ours.
+/// Maximum number of iterations: 10. Source: ours.
 const MAX_ITERATIONS: usize = 10;
 /// Step of the readout time that ends the iteration: 1e-6 s. Source: ours.
 const MIN_STEP_S: f64 = 1e-6;

@@ -11,7 +11,7 @@ use crate::local_mapping::keyframe_culling::cull_keyframes;
 use crate::local_mapping::local_mapper::LocalMapper;
 use crate::map::anchored_pose::AnchoredPose;
 use crate::map::landmark_map::LandmarkMap;
-use crate::motion::uncertain_pose::{UncertainPose, carried};
+use crate::motion::uncertain_pose::{UncertainPose, propagated};
 use crate::report::{MapMerge, Mode, SeenFeature, TrackReport};
 use crate::tracking::last_frame::LastFrame;
 use crate::tracking::local_map::LocalMapQuery;
@@ -148,7 +148,7 @@ impl RgbdSlam {
         } else {
             (belief.visual_from_camera, &belief.covariance)
         };
-        carried(covariance, anchor.inverse() * pose) + local
+        propagated(covariance, anchor.inverse() * pose) + local
     }
 
     /// Updates the map by a located frame, unless the map is fixed.
@@ -167,7 +167,7 @@ impl RgbdSlam {
         let pose = localized.pose.visual_from_camera();
         let tracked = landmarks.iter().flatten().count();
         let shown = localized.visible.iter().map(|(_, projection)| projection.pixel);
-        let is_wanted = self.config.keyframes.wants(frame, pose, tracked, shown, map);
+        let is_wanted = self.config.keyframes.needs_keyframe(frame, pose, tracked, shown, map);
         is_wanted.then(|| self.add_keyframe(frame, pose, landmarks, covariance))
     }
 

@@ -18,22 +18,23 @@ pub struct TrackingConfig {
     /// Radius of the search for a landmark of the map after tracking from the last frame, px of its octave, above 0, to 1000. Default 6: three standard
     /// deviations of a keypoint and as much for the map.
     pub map_window_px: f64,
-    /// Largest distance of descriptors in a match within a window, bits of 256. A larger value gives more, and more wrong, matches. Default
+    /// Largest distance of descriptors in a match within a window, bits, 0 to 256. A larger value gives more, and more wrong, matches. Default
     /// 80: unlike points differ by 128 on average.
     pub window_distance: u32,
     /// Largest quotient of the best and the second-best distance within a window, above 0 to 1. A smaller value drops ambiguous matches.
-    /// Default 0.9.
+    /// Default 0.9 (ours).
     pub window_ratio: f32,
-    /// Largest distance of descriptors in a match without a window, bits. Default 64.
+    /// Largest distance of descriptors in a match without a window, bits, 0 to 256. Default 64 (ours).
     pub free_distance: u32,
-    /// Largest quotient of the best and the second-best distance without a window, above 0 to 1. Default 0.8.
+    /// Largest quotient of the best and the second-best distance without a window, above 0 to 1. Default 0.8 (ours).
     pub free_ratio: f32,
-    /// Maximum number of landmarks that are searched in one frame. Default 4000.
+    /// Maximum number of landmarks that are searched in one frame, `weak_inliers` or more. Default 4000 (ours).
     pub max_landmarks: usize,
     /// Number of inliers below which a frame is not located, 6 or more. A smaller number locates frames of bare walls, less reliably.
-    /// Default 20.
+    /// Default 20 (ours).
     pub min_inliers: usize,
-    /// Number of inliers below which a frame is located weakly, and below which a relocalisation is refused. Default 40.
+    /// Number of inliers below which a frame is located weakly, and below which a relocalisation is refused, `min_inliers` or more.
+    /// Default 40 (ours).
     pub weak_inliers: usize,
     /// Number of keyframes that a lost camera is compared with per frame, 1 or more, and of keyframes similar to the one found. More find a
     /// place sooner and take longer. Default 5: some 20 ms, 40 ms with a try in an inactive map.
@@ -45,7 +46,7 @@ pub struct TrackingConfig {
     /// Largest standard deviation of a relocalisation's position, m, above 0, to 10, including the common errors of one image's points. Default
     /// 0.05. Views with almost all points beyond 6 m exceed it, with errors up to 0.3 m; 97 of 100 other views do not (docs/results.md).
     pub recognised_sigma: f64,
-    /// Number of frames in a row without a pose after which mapping restarts: at the dead-reckoned pose, or without odometry in a new map.
+    /// Number of frames in a row without a pose, 0 or more, after which mapping restarts: at the dead-reckoned pose, or without odometry in a new map.
     /// Default 30: a second.
     pub patience: usize,
     /// The solver.
@@ -93,9 +94,9 @@ impl TrackingConfig {
             ("tracking.max_landmarks", self.max_landmarks, self.weak_inliers),
             ("tracking.relocalisation_keyframes", self.relocalisation_keyframes, 1),
         ];
-        for (name, value, least) in counts {
-            if value < least {
-                return Err(Invalid::new(name, value, "", format!("{least} or more")));
+        for (name, value, min) in counts {
+            if value < min {
+                return Err(Invalid::new(name, value, "", format!("{min} or more")));
             }
         }
         self.pose = self.pose.validated()?;

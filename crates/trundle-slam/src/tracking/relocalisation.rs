@@ -75,9 +75,9 @@ mod tests {
         };
         let groups =
             vec![group(0.33, &[1, 2, 3]), group(0.26, &[10, 11]), group(0.05, &[20]), group(0.05, &[21])];
-        let tries = |most: usize, certain: &[usize], doubtful: &[usize]| {
+        let tries = |max: usize, certain: &[usize], doubtful: &[usize]| {
             let mut tries = Vec::new();
-            let at = try_groups(groups.clone(), most, |member| {
+            let at = try_groups(groups.clone(), max, |member| {
                 let id = member.index();
                 tries.push(id);
                 let certainty = if certain.contains(&id) { Certain } else { Implausible };

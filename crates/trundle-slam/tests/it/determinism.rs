@@ -1,4 +1,4 @@
-//! The same images give the same bytes: for any number of threads, on a busy computer, again and again.
+//! The same images give the same bytes: for any number of threads, on a busy computer, in repeated runs.
 
 use crate::freiburg;
 use crate::room::{Clean, camera};
@@ -27,7 +27,7 @@ fn run(
 
 fn assert_always_the_same(camera: PinholeCamera, images: &[RgbdImage], priors: Option<&[Pose3]>) {
     let first = run(1, camera, images, priors);
-    assert!(first == run(2, camera, images, priors), "two threads find something else than one");
+    assert!(first == run(2, camera, images, priors), "two threads give another result than one");
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
         for _ in 0..3 {
@@ -39,7 +39,7 @@ fn assert_always_the_same(camera: PinholeCamera, images: &[RgbdImage], priors: O
         }
         let busy = run(2, camera, images, priors);
         is_over.store(true, Ordering::Relaxed);
-        assert!(first == busy, "a busy computer finds something else");
+        assert!(first == busy, "a busy computer gives another result");
     });
 }
 

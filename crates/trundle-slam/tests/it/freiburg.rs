@@ -1,4 +1,4 @@
-//! The TUM sequence freiburg1_rpy (Sturm et al. 2012), 400 frames, if it is at hand.
+//! The TUM sequence freiburg1_rpy (Sturm et al. 2012), 400 frames; skipped if the data set is missing.
 
 use crate::align::aligned_rmse;
 use crate::drive::Drive;
@@ -11,7 +11,7 @@ const SEQUENCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/dat
 
 pub use crate::drive::freiburg1 as camera;
 
-/// The sequence; `None`, and a line about it, if it is not at hand.
+/// The sequence; `None`, with a printed note, if the data set is missing.
 fn sequence() -> Option<Drive> {
     let drive = Path::new(SEQUENCE).exists().then(|| Drive::open(SEQUENCE));
     if drive.is_none() {
@@ -20,10 +20,10 @@ fn sequence() -> Option<Drive> {
     drive
 }
 
-/// The first frames; `None` if the sequence is not at hand.
-pub fn frames(most: usize) -> Option<Vec<RgbdImage>> {
+/// The first frames; `None` if the data set is missing.
+pub fn frames(max: usize) -> Option<Vec<RgbdImage>> {
     let drive = sequence()?;
-    Some((0..most.min(drive.frames.len())).map(|i| drive.image(i)).collect())
+    Some((0..max.min(drive.frames.len())).map(|i| drive.image(i)).collect())
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn freiburg1_rpy_is_tracked_within_2_cm() {
         total / n * 1e3,
         slowest * 1e3,
     );
-    assert_eq!(located, drive.frames.len(), "every frame is located by sight");
+    assert_eq!(located, drive.frames.len(), "every frame is located by its image");
     assert!(rmse < 0.02, "ATE RMSE {rmse} m");
 }
 

@@ -1,4 +1,4 @@
-//! Localise only: the map stays as it is, and the poses in it are those of the mapping run.
+//! Localise only: the map does not change, and the poses equal those of the mapping run.
 
 use crate::room::{Clean, camera, shoot};
 use crate::walks::{dark, turned};
@@ -29,7 +29,7 @@ fn map_of_a_corner() -> RgbdSlam {
     fixed(&mapped(&images, 1), 1)
 }
 
-/// The map of a SLAM, saved and loaded, to be used as it is.
+/// The map of a SLAM, saved and loaded as a fixed map.
 fn fixed(mapped: &RgbdSlam, seed: u64) -> RgbdSlam {
     let config = SlamConfig { seed, ..SlamConfig::default() };
     let mut slam = RgbdSlam::load(&mapped.save(), camera(), config).unwrap().starting_at(Pose3::identity());
@@ -91,14 +91,14 @@ fn the_images_of_the_map_are_located_where_they_were_mapped() {
 #[test]
 fn the_covariance_grows_while_the_map_is_out_of_view() {
     let mut slam = map_of_a_corner();
-    let way: Vec<usize> = (0..50).chain((0..50).rev()).collect();
+    let path: Vec<usize> = (0..50).chain((0..50).rev()).collect();
     let shot = |(i, at): (usize, &usize)| slam.step(&shoot(100 + i, turned(*at)), None);
-    let reports: Vec<TrackReport> = way.iter().enumerate().map(shot).collect();
+    let reports: Vec<TrackReport> = path.iter().enumerate().map(shot).collect();
     let is_away = |i: &usize| (24..76).contains(i);
-    for i in (0..way.len()).filter(is_away) {
+    for i in (0..path.len()).filter(is_away) {
         assert_eq!(reports[i].tracking, Tracking::Weak, "frame {i}");
         assert!(sigma(&reports[i]) > sigma(&reports[i - 1]), "frame {i}: {} m", sigma(&reports[i]));
-        let error = (turned(way[i]).inverse() * reports[i].visual_from_camera).log();
+        let error = (turned(path[i]).inverse() * reports[i].visual_from_camera).log();
         let squared = error.dot(&(reports[i].covariance.try_inverse().unwrap() * error));
         assert!(squared < MAX_SQUARED_ERROR, "frame {i}: squared error {squared}");
     }
@@ -123,13 +123,13 @@ fn a_camera_that_drifted_out_of_view_of_the_map_meets_it_again() {
     let home = (0..30).rev().map(|i| (aside(i), 1.0));
     let back = (0..50).rev().map(|i| (turned(i), 1.0));
     let stay = (0..40).map(|i| (turned(i % 4), 1.0));
-    let way: Vec<(Pose3, f32)> = there.chain(out).chain(home).chain(back).chain(stay).collect();
+    let path: Vec<(Pose3, f32)> = there.chain(out).chain(home).chain(back).chain(stay).collect();
     let mut offs = vec![];
-    for (i, (pose, by)) in way.iter().enumerate() {
+    for (i, (pose, by)) in path.iter().enumerate() {
         let report = slam.step(&scaled(&Clean::at(*pose).shot(100 + i), *by), None);
         offs.push(off(&report, *pose));
     }
     println!("{:.3} m off before the map is met, {:.4} m at the end", offs[120], offs[199]);
     assert!(offs[120] > 0.3, "it drifted: {} m", offs[120]);
-    assert!(offs[199] < GOAL_M, "{} m off for good", offs[199]);
+    assert!(offs[199] < GOAL_M, "{} m off at the end", offs[199]);
 }

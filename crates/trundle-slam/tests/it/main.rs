@@ -3,11 +3,11 @@
 
 #[path = "../support/align.rs"]
 mod align;
+mod consistency;
 mod determinism;
 #[path = "../support/drive.rs"]
 mod drive;
 mod freiburg;
-mod honesty;
 mod localise;
 mod maps;
 mod memory;

@@ -1,4 +1,4 @@
-//! Several maps, and places that are not what they look like.
+//! Several maps, and look-alike places.
 
 use crate::room::{Clean, camera, shoot};
 use crate::walks::{dark, turned};
@@ -6,8 +6,8 @@ use nalgebra::{Matrix6, Vector6};
 use trundle_core::{CameraMotion, Pose3, RgbdImage};
 use trundle_slam::{Mode, RgbdSlam, SlamConfig, TrackReport, Tracking};
 
-/// Where the camera is: maps one side of the room, is carried to the other in the dark (`None`), where it is lost and begins
-/// a second map, and turns on until it sees the first.
+/// Poses of the camera. It maps one side of the room, is carried to the other in the dark (`None`), is lost there, begins a second map, and
+/// turns until the first map is in view.
 fn carried() -> Vec<Option<Pose3>> {
     let first = (0..20).step_by(2).map(|i| Some(turned(i)));
     let second = (0..12).map(|_| Some(turned(50)));
@@ -15,7 +15,7 @@ fn carried() -> Vec<Option<Pose3>> {
     first.chain([None; 3]).chain(second).chain(back).collect()
 }
 
-/// Lets a hasty camera see all of them.
+/// Runs the SLAM on all poses.
 fn run(images: &[RgbdImage]) -> (RgbdSlam, Vec<TrackReport>) {
     let mut config = SlamConfig::default();
     config.tracking.patience = 8;
@@ -26,16 +26,16 @@ fn run(images: &[RgbdImage]) -> (RgbdSlam, Vec<TrackReport>) {
 
 #[test]
 fn a_lost_camera_begins_a_second_map_that_is_merged_when_the_first_is_seen() {
-    let way = carried();
+    let path = carried();
     let shot = |(i, pose): (usize, &Option<Pose3>)| pose.map_or_else(|| dark(i), |pose| shoot(i, pose));
-    let images: Vec<RgbdImage> = way.iter().enumerate().map(shot).collect();
+    let images: Vec<RgbdImage> = path.iter().enumerate().map(shot).collect();
     let (slam, reports) = run(&images);
     let second_map = reports.iter().position(|r| r.map != reports[0].map).expect("a second map");
     assert_eq!(second_map, 17, "after 8 frames of patience");
     assert!(reports[10..second_map].iter().all(|r| r.tracking == Tracking::Lost));
-    assert_eq!(reports[second_map].visual_from_camera, Pose3::identity(), "in a frame of its own");
+    assert_eq!(reports[second_map].visual_from_camera, Pose3::identity(), "the second map has its own frame");
     assert!(reports[second_map..].iter().all(|r| r.tracking.is_located()), "and never lost again");
-    let at = reports.iter().position(|r| r.merged.is_some()).expect("they became one");
+    let at = reports.iter().position(|r| r.merged.is_some()).expect("the maps are merged");
     let merged = reports[at].merged.unwrap();
     assert_eq!((merged.into, merged.from), (reports[0].map, reports[second_map].map));
     assert_eq!((slam.maps(), reports[at].map), (vec![merged.into], merged.into));
@@ -43,21 +43,21 @@ fn a_lost_camera_begins_a_second_map_that_is_merged_when_the_first_is_seen() {
     assert!((merged.correction.inverse() * jump).log().norm() < 0.2, "reported as a correction: {jump:?}");
 
     let located =
-        reports.iter().zip(&way).filter(|(r, _)| r.tracking.is_located()).map(|(_, pose)| pose.unwrap());
+        reports.iter().zip(&path).filter(|(r, _)| r.tracking.is_located()).map(|(_, pose)| pose.unwrap());
     let trajectory = slam.trajectory();
     let errors = located.zip(&trajectory).map(|(truth, (_, pose))| (truth.inverse() * *pose).log().norm());
     let errors: Vec<f64> = errors.collect();
     let worst = errors.iter().copied().fold(0.0, f64::max);
     println!("merged at {at} by {} points, worst error {worst:.3} (m and rad)", merged.points);
-    assert_eq!((errors.len(), trajectory.len()), (way.len() - 7, way.len() - 7));
+    assert_eq!((errors.len(), trajectory.len()), (path.len() - 7, path.len() - 7));
     assert!(worst < 0.06, "{worst}");
 
     let (again, the_same) = run(&images);
-    assert!(reports == the_same && trajectory == again.trajectory(), "every time the same");
+    assert!(reports == the_same && trajectory == again.trajectory(), "every run gives the same");
     assert!(slam.save() == again.save(), "to the byte");
 }
 
-/// Drives on in the dark into a second room that looks the same to the pixel.
+/// Drives in the dark into a second room with identical views.
 #[test]
 fn a_look_alike_room_is_not_merged() {
     let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
@@ -79,7 +79,7 @@ fn a_look_alike_room_is_not_merged() {
     }
 }
 
-/// Set down elsewhere while it turns: what it sees then is not what lies where the first map ends.
+/// Carried elsewhere during a turn: the new view does not continue the first map.
 #[test]
 fn a_camera_that_is_carried_between_two_images_does_not_go_on_mapping() {
     let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
@@ -89,18 +89,18 @@ fn a_camera_that_is_carried_between_two_images_does_not_go_on_mapping() {
     for i in 20..48 {
         let report = slam.step(&shoot(i, turned(2 * i + 30)), Some(turned(2).into()));
         assert!(report.features >= 200 && !report.tracking.is_located(), "frame {i}: {report:?}");
-        assert!(!report.new_keyframe, "frame {i} is of another place than the wheels say");
+        assert!(!report.new_keyframe, "frame {i} is at another place than by the wheels");
     }
     let found =
         (48..60).find(|i| slam.step(&shoot(*i, turned(10)), Some(Pose3::identity().into())).relocalised);
-    assert_eq!(found, None, "the wheels know better, until somebody says that it was carried");
+    assert_eq!(found, None, "the wheels count until the robot is declared as carried");
     slam.kidnapped();
     let found =
         (60..70).find(|i| slam.step(&shoot(*i, turned(10)), Some(Pose3::identity().into())).relocalised);
     assert!(found.is_some());
 }
 
-/// Wheels that lost count in the dark: what comes behind is laid by whoever knows the place, until the first map is seen again.
+/// The wheels lost ticks in the dark: a second map begins, until the first map is in view again.
 #[test]
 fn after_uncertain_dead_reckoning_another_map_begins_and_is_merged() {
     let unsure = |motion: Pose3| CameraMotion {
@@ -111,10 +111,10 @@ fn after_uncertain_dead_reckoning_another_map_begins_and_is_merged() {
     for i in 0..20 {
         assert!(slam.step(&shoot(i, turned(2 * i)), Some(turned(2).into())).tracking.is_located());
     }
-    // Half way round, of which the wheels tell all but 0.2 rad, and a third of a metre that was none.
-    let told = turned(4) * Pose3::exp(Vector6::new(0.0, 0.0, 0.03, 0.0, 0.01, 0.0));
+    // Half a turn. The wheels report 0.2 rad less, and 0.3 m of motion that did not happen.
+    let reported = turned(4) * Pose3::exp(Vector6::new(0.0, 0.0, 0.03, 0.0, 0.01, 0.0));
     for i in 20..30 {
-        assert_eq!(slam.step(&dark(i), Some(unsure(told))).tracking, Tracking::DeadReckoning);
+        assert_eq!(slam.step(&dark(i), Some(unsure(reported))).tracking, Tracking::DeadReckoning);
     }
     let mut merged = None;
     for (i, view) in (30..100).zip((80..).step_by(2)) {
@@ -126,7 +126,7 @@ fn after_uncertain_dead_reckoning_another_map_begins_and_is_merged() {
         let error = (turned(view).inverse() * report.visual_from_camera).log().norm();
         assert!(!first || i == 30 || error < 0.05, "frame {i} is off by {error:.3}");
     }
-    assert!(merged.is_some(), "it came round");
+    assert!(merged.is_some(), "the turn is complete");
     assert_eq!(slam.maps().len(), 1);
 }
 
@@ -136,7 +136,7 @@ fn without_odometry_a_relocalisation_must_be_within_reach() {
     for i in 0..20 {
         assert!(slam.step(&shoot(i, turned(2 * i)), None).tracking.is_located());
     }
-    // Back at the first view, 2.4 rad away, one frame later: at 3.5 rad/s that takes 18.
+    // Back at the first view, 2.4 rad away, one frame later: at 3.5 rad/s this takes 18 frames.
     let back = Clean::at(turned(0));
     let tracking: Vec<Tracking> = (20..50).map(|i| slam.step(&back.shot(i), None).tracking).collect();
     let found = tracking.iter().position(|t| t.is_located()).expect("it is a place of the map");
@@ -148,7 +148,7 @@ fn without_odometry_a_relocalisation_must_be_within_reach() {
     assert_eq!(slam.maps().len(), 1);
 }
 
-/// The place is in both, which were never found to be one: that two say where it is must not keep it lost.
+/// The place is in two maps that were not merged: two hypotheses of the pose must not keep the camera lost.
 #[test]
 fn a_lost_camera_is_found_where_two_maps_overlap() {
     let mut config = SlamConfig::default();
@@ -167,9 +167,9 @@ fn a_lost_camera_is_found_where_two_maps_overlap() {
     assert!(found.is_some_and(|frames| frames <= 4), "{found:?}");
 }
 
-/// Nobody tells how it turns: 0.38 rad a frame, and 0.19 with every second image dark.
+/// Turns without odometry: 0.38 rad per frame, and 0.19 rad with every second image dark.
 #[test]
-fn a_lost_camera_that_turns_fast_or_sees_now_and_then_is_found() {
+fn a_lost_camera_that_turns_fast_or_has_few_usable_images_is_found() {
     let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
     for i in 0..25 {
         slam.step(&shoot(i, turned(4 * i)), None);

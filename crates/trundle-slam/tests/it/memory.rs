@@ -1,4 +1,4 @@
-//! Ten laps of one room take no more memory than three, and no time does.
+//! Ten laps of one room take the memory of three laps; memory does not grow with time.
 
 use crate::points::{Dice, Room, camera, darkness, stamp};
 use nalgebra::Vector6;
@@ -9,7 +9,7 @@ use trundle_slam::{RgbdSlam, SlamConfig, Tracking};
 /// Frames of a lap.
 const LAP: usize = 72;
 
-/// Round the room, never twice on quite the same way.
+/// A lap of the room, on a slightly different path each time.
 fn lap(frame: usize, dice: &mut Dice) -> Pose3 {
     let t = frame as f64 / LAP as f64 * TAU;
     let (dx, dz) = (0.05 * (dice.uniform() - 0.5), 0.05 * (dice.uniform() - 0.5));
@@ -46,18 +46,18 @@ fn only_wanted_poses_of_the_newest_frames_are_kept() {
     let config = SlamConfig { kept_frames: 7, ..SlamConfig::default() };
     let mut slam = RgbdSlam::new(camera(), config).unwrap();
     let (room, mut dice) = (Room::new(), Dice(5));
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     for i in 0..20 {
         let (features, depth) =
             if i % 5 == 3 { darkness() } else { room.seen_from(lap(i, &mut Dice(5)), &mut dice) };
         let report = slam.step_with_features(stamp(i), features, &depth, Some(Pose3::identity().into()));
-        told.push(report.stamp);
+        reported.push(report.stamp);
     }
     let kept: Vec<_> = slam.trajectory().into_iter().map(|(stamp, _)| stamp).collect();
-    assert_eq!(kept, told[13..]);
-    slam.forget_frames(|stamp| stamp == told[15]);
+    assert_eq!(kept, reported[13..]);
+    slam.forget_frames(|stamp| stamp == reported[15]);
     let kept: Vec<_> = slam.trajectory().into_iter().map(|(stamp, _)| stamp).collect();
-    assert_eq!(kept, [told[15], told[19]], "that one, and the last");
+    assert_eq!(kept, [reported[15], reported[19]], "that one, and the last");
     let none = SlamConfig { kept_frames: 0, ..SlamConfig::default() };
     let error = RgbdSlam::new(camera(), none).unwrap_err().to_string();
     assert_eq!(error, "slam.kept_frames is 0, expected 1 or more");

@@ -1,5 +1,5 @@
-//! A room of points and a camera that sees them with exactly the noise that the configuration promises: no image is drawn
-//! and no feature extracted, so that many runs cost little and the estimator is all that is evaluated.
+//! A room of points, observed with exactly the noise of the configuration. Without images and feature extraction many runs are cheap, and
+//! only the estimator is evaluated.
 
 use nalgebra::Vector6;
 use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp, Vector2, Vector3};
@@ -10,9 +10,9 @@ use trundle_vision::{Descriptor, Features, Keypoint, OrbConfig};
 const HALF: Vector3 = Vector3::new(2.2, 1.4, 2.6);
 /// Points on its walls.
 const POINTS: u64 = 7000;
-/// Bits of a descriptor that differ from look to look.
+/// Bits of a descriptor that differ between two views.
 const FLIPPED: usize = 10;
-/// How much larger an octave is than the one before.
+/// Scale factor between octaves.
 const SCALE: f64 = 1.2;
 
 /// Random numbers of one run (SplitMix64).
@@ -50,7 +50,7 @@ struct Point {
     position: Vector3,
     inward: Vector3,
     descriptor: Descriptor,
-    /// From how far it is seen at octave 0, m.
+    /// Distance of the view at octave 0, m.
     distance_at_octave_0: f64,
 }
 
@@ -69,7 +69,7 @@ impl Room {
         Self { points: (0..POINTS).map(point).collect() }
     }
 
-    /// View of a camera: features and depth image, noise and all.
+    /// View of a camera: features and depth image, with noise.
     pub fn seen_from(&self, room_from_camera: Pose3, dice: &mut Dice) -> (Features, DepthImage) {
         let (camera, config) = (camera(), SlamConfig::default());
         let camera_from_room = room_from_camera.inverse();
@@ -97,14 +97,14 @@ impl Room {
     }
 }
 
-/// Whether ORB has enough around a pixel to describe it by.
+/// Whether the surroundings of a pixel suffice for an ORB descriptor.
 fn is_describable(pixel: Vector2, octave: i32) -> bool {
     let (camera, margin) = (camera(), OrbConfig::MARGIN as f64 * SCALE.powi(octave));
     let is_within = |v: f64, side: usize| (margin..=side as f64 - 1.0 - margin).contains(&v);
     is_within(pixel.x, camera.width()) && is_within(pixel.y, camera.height())
 }
 
-/// Nothing to see.
+/// An image without features.
 pub fn darkness() -> (Features, DepthImage) {
     let camera = camera();
     (Features::default(), DepthImage::filled(camera.width(), camera.height(), 0.0))
@@ -114,7 +114,7 @@ pub fn stamp(number: usize) -> Stamp {
     Stamp::from_nanos(1_000_000_000 + number as i64 * 33_333_333)
 }
 
-/// A motion as the wheels report it, as wrong as the configuration says.
+/// A motion by the wheels, with the noise of the configuration.
 pub fn reported(motion: Pose3, config: &SlamConfig, dice: &mut Dice) -> Pose3 {
     let (off, turned) = config.motion.sigmas(motion, 1.0 / 30.0);
     let noise = Vector6::from_fn(|i, _| dice.normal() * if i < 3 { off } else { turned });

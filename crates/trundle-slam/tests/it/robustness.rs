@@ -40,7 +40,7 @@ fn empty_images_are_reported_and_survived() {
     for (i, blank) in empty.iter().enumerate() {
         let report = slam.step(blank, (i % 2 == 0).then(|| forward(0.01).into()));
         let expected = if i % 2 == 0 { Tracking::DeadReckoning } else { Tracking::Lost };
-        // The depthless picture is still located, by the landmarks that it shows.
+        // The image without depth is located by its landmarks.
         assert_eq!(report.tracking, if i == 3 { Tracking::Ok } else { expected }, "image {i}");
     }
     let report = slam.step(&shoot(11, Pose3::identity()), Some(Pose3::exp(Vector6::repeat(f64::NAN)).into()));
@@ -82,7 +82,7 @@ fn dead_reckoning_bridges_a_blank_wall_and_mapping_goes_on_behind_it() {
         let report = slam.step(&image(i, (320, 240), 128, 1.0), Some(step(1).into()));
         assert_eq!(report.tracking, Tracking::DeadReckoning);
     }
-    // What is seen twice is not noise.
+    // A texture that repeats in two images is not noise.
     for (i, begins) in [(20, false), (21, true)] {
         let report = slam.step(&shoot(i, step(i)), Some(step(1).into()));
         assert_eq!((report.new_keyframe, report.tracking), (begins, Tracking::DeadReckoning));
@@ -94,7 +94,7 @@ fn dead_reckoning_bridges_a_blank_wall_and_mapping_goes_on_behind_it() {
     assert_eq!(slam.trajectory().len(), 23);
 }
 
-/// A wall 1 m ahead of which a camera sees its own noise: another one in every image.
+/// A bare wall 1 m ahead: each image shows other noise of the camera.
 fn noise(number: usize) -> RgbdImage {
     let mut state = number as u64 + 1;
     let mut pixel = || {
@@ -112,13 +112,13 @@ fn noise_on_a_bare_wall_makes_no_map() {
     config.orb.min_texture = 0.0;
     let mut slam = RgbdSlam::new(camera(), config).unwrap();
     assert_eq!(slam.step(&shoot(0, Pose3::identity()), None).tracking, Tracking::Ok);
-    let told = || Some(forward(0.0).into());
+    let reported = || Some(forward(0.0).into());
     for i in 1..60 {
-        let report = slam.step(&noise(i), told());
+        let report = slam.step(&noise(i), reported());
         assert!(report.features > 100 && !report.new_keyframe, "frame {i}: {}", report.features);
         assert_eq!(report.tracking, Tracking::DeadReckoning);
     }
-    assert_eq!(slam.step(&shoot(60, Pose3::identity()), told()).tracking, Tracking::Ok);
+    assert_eq!(slam.step(&shoot(60, Pose3::identity()), reported()).tracking, Tracking::Ok);
 }
 
 #[test]

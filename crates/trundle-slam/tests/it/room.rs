@@ -34,7 +34,7 @@ impl Clean {
         Self { shade: Image::from_fn(width, height, shade), depth }
     }
 
-    /// With the noise of frame `number`.
+    /// The view with the noise of frame `number`.
     pub fn shot(&self, number: usize) -> RgbdImage {
         let (width, height) = (self.depth.width(), self.depth.height());
         let noise =

@@ -1,4 +1,4 @@
-//! Maps that last: what is saved comes back, and what is not a map is refused.
+//! Saved maps: a saved map is restored exactly, and other files are refused.
 
 use crate::room::{camera, shoot};
 use crate::walks::{dark, turned};
@@ -43,18 +43,18 @@ fn a_loaded_map_is_identical_and_the_camera_is_relocalized_in_it() {
     assert_eq!(
         slam.step(&shoot(101, turned(18)), None).tracking,
         Tracking::Lost,
-        "one image may be of a twin"
+        "one image may show a look-alike place"
     );
     let report = slam.step(&shoot(102, turned(21)), None);
     assert!(report.tracking == Tracking::Ok && report.relocalised);
     assert!((turned(21).inverse() * report.visual_from_camera).log().norm() < 0.03);
-    let told = report.covariance.fixed_view::<3, 3>(0, 0).trace().sqrt();
+    let reported = report.covariance.fixed_view::<3, 3>(0, 0).trace().sqrt();
     let mut unsure = SlamConfig::default();
-    unsure.tracking.recognised_sigma = told / 10.0;
+    unsure.tracking.recognised_sigma = reported / 10.0;
     let mut other = RgbdSlam::load(&bytes, camera(), unsure).unwrap();
     for i in 0..4 {
         let report = other.step(&shoot(101 + i, turned(21)), None);
-        assert_eq!(report.tracking, Tracking::Lost, "image {i}, {told} m is too little");
+        assert_eq!(report.tracking, Tracking::Lost, "image {i}, {reported} m is too little");
     }
     let keyframes = report.keyframes;
     for i in 1..10 {
@@ -126,7 +126,7 @@ fn bytes_that_are_not_a_map_are_refused_with_the_reason() {
     );
 }
 
-/// The same bytes with the checksum that they should have: what a hostile hand would send.
+/// The same bytes with a matching checksum, as an attacker would send them.
 fn sealed(bytes: &[u8]) -> Vec<u8> {
     let sum = bytes[16..].chunks(8).fold(0xCBF2_9CE4_8422_2325 ^ (bytes.len() - 16) as u64, |sum, chunk| {
         let word = chunk.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
@@ -148,7 +148,7 @@ proptest! {
         prop_assert!(load(&bytes).is_err());
     }
 
-    /// Bytes changed with the checksum put right: refused, or a map that can be used; never a panic.
+    /// Changed bytes with a matching checksum: refused, or a usable map; never a panic.
     #[test]
     fn a_hostile_map_is_refused_or_harmless(
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6), cut in 0..40_usize,

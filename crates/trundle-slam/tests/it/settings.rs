@@ -1,4 +1,4 @@
-//! Wrong settings are noticed within the first 100 frames, and right ones are not suspected.
+//! Wrong settings are reported within the first 100 frames, and right ones are not.
 
 use crate::freiburg;
 use crate::room::{Clean, camera};
@@ -6,8 +6,8 @@ use nalgebra::Vector6;
 use trundle_core::{ColorImage, DepthImage, Distortion, PinholeCamera, Pose3, RgbdImage, Vector2, Vector3};
 use trundle_slam::{CalibrationIssue, RgbdSlam, SlamConfig};
 
-/// Suspected settings after the first 100 frames of freiburg1_rpy, changed by `change`, as `camera` is said to see them;
-/// `None` if the sequence is not at hand.
+/// Suspected settings after the first 100 frames of freiburg1_rpy, changed by `change`, with `camera` as the given calibration;
+/// `None` if the data set is missing.
 fn suspected(
     camera: PinholeCamera,
     change: impl Fn(RgbdImage) -> RgbdImage,
@@ -30,7 +30,7 @@ fn scaled(image: &RgbdImage, by: f32) -> RgbdImage {
     with_depth(image, DepthImage::from_fn(depth.width(), depth.height(), |x, y| by * depth[(x, y)]))
 }
 
-/// The depth image as the depth camera of a Kinect v1 sees it: 2.5 cm beside the colour camera, with a longer focal length.
+/// The depth image in the view of the depth camera of a Kinect v1: 2.5 cm beside the colour camera, with a longer focal length.
 fn unregistered(image: &RgbdImage) -> RgbdImage {
     let (camera, depth) = (freiburg::camera(), image.depth());
     let mut out = DepthImage::filled(640, 480, 0.0);
@@ -74,10 +74,10 @@ fn a_depth_scale_off_by_five_is_noticed() {
 #[test]
 fn swapped_focal_lengths_are_noticed() {
     let lens = freiburg::camera().distortion();
-    let said = |fx: f64, fy: f64| PinholeCamera::new((512, 480), (fx, fy), (254.9, 255.3), lens).unwrap();
-    let Some(found) = suspected(said(516.5, 413.8), |image| squeezed(&image)) else { return };
+    let reported = |fx: f64, fy: f64| PinholeCamera::new((512, 480), (fx, fy), (254.9, 255.3), lens).unwrap();
+    let Some(found) = suspected(reported(516.5, 413.8), |image| squeezed(&image)) else { return };
     assert!(found.iter().any(|s| s.to_string().contains("fx and fy swapped")), "{found:?}");
-    let right = suspected(said(413.8, 516.5), |image| squeezed(&image)).unwrap();
+    let right = suspected(reported(413.8, 516.5), |image| squeezed(&image)).unwrap();
     assert_eq!(right, vec![]);
 }
 
@@ -96,16 +96,16 @@ fn colour_and_depth_that_are_not_registered_are_noticed() {
     assert!(found.iter().any(|s| s.to_string().contains("not registered")), "{found:?}");
 }
 
-/// Suspected settings of `said` after 100 frames of a robot that drives and turns in the rendered room; its wheels say
-/// `wheels` times the way.
-fn suspected_in_the_room(said: PinholeCamera, wheels: f64) -> Vec<CalibrationIssue> {
+/// Suspected settings of `reported` after 100 frames of a robot that drives and turns in the rendered room; its wheels report
+/// `wheels` times the distance.
+fn suspected_in_the_room(reported: PinholeCamera, wheels: f64) -> Vec<CalibrationIssue> {
     let pose = |i: usize| {
         let turn = 0.5 * (i as f64 * 0.06).sin();
         Pose3::exp(Vector6::new(0.0, 0.0, i as f64 * 0.012 - 0.6, 0.0, 0.0, 0.0))
             * Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.14, 0.0, 0.0))
             * Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, turn, 0.0))
     };
-    let mut slam = RgbdSlam::new(said, SlamConfig::default()).unwrap();
+    let mut slam = RgbdSlam::new(reported, SlamConfig::default()).unwrap();
     for i in 0..100 {
         let step = pose(i.max(1) - 1).inverse() * pose(i);
         let prior = Pose3::new(step.rotation, step.translation * wheels);

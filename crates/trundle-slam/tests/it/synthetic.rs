@@ -16,7 +16,7 @@ fn walk(frame: usize) -> Pose3 {
 }
 
 #[test]
-fn a_walk_through_a_room_is_followed_and_the_covariance_is_honest() {
+fn a_walk_through_a_room_is_tracked_with_a_consistent_covariance() {
     let mut slam = slam().starting_at(walk(0));
     let mut nees = 0.0;
     for i in 0..=90 {
@@ -80,8 +80,8 @@ fn the_same_images_give_the_same_bits() {
     assert_eq!(run(), run());
 }
 
-/// Turns on the spot; in the dark in the middle of it the wheels are wrong by 15 cm and 3 deg, and the far side of the
-/// room is mapped from there on. Back at the first view, the loop must be seen and the whole error taken out.
+/// A turn on the spot. In the dark in its middle the wheels err by 15 cm and 3 deg, and the far side of the room is mapped with this
+/// error. Back at the first view the loop must be closed and the error removed.
 #[test]
 fn a_loop_closure_removes_the_drift() {
     let mut slam = slam();
@@ -100,7 +100,7 @@ fn a_loop_closure_removes_the_drift() {
         closed = closed.or(report.closed_loop);
     }
     let (_, last) = *slam.trajectory().last().unwrap();
-    let closed = closed.expect("the loop was not seen");
+    let closed = closed.expect("the loop was not closed");
     println!("error {before:.3} before, {:.3} after, {} points", error(112, last), closed.points);
     assert!(before > 0.1, "the wheels were wrong: {before}");
     assert!(error(112, last) < 0.03, "{}", error(112, last));

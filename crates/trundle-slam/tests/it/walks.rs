@@ -1,4 +1,4 @@
-//! Ways through the room.
+//! Trajectories through the room.
 
 use crate::room::{camera, stamp};
 use nalgebra::Vector6;
@@ -9,7 +9,7 @@ pub fn turned(step: usize) -> Pose3 {
     Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, step as f64 / 100.0 * std::f64::consts::TAU, 0.0))
 }
 
-/// An image in which nothing is to be seen.
+/// A dark image.
 pub fn dark(number: usize) -> RgbdImage {
     let camera = camera();
     let color = ColorImage::filled(camera.width(), camera.height(), [0; 3]);

@@ -1,11 +1,11 @@
-//! The rigid alignment of two point sequences (Umeyama 1991, without scale), to evaluate trajectories by.
+//! The rigid alignment of two point sequences (Umeyama 1991, without scale), to evaluate trajectories.
 
 #![allow(dead_code, reason = "each program uses a part of it")]
 
 use nalgebra::Matrix3;
 use trundle_core::Vector3;
 
-/// The estimate, moved and turned as a whole to where it is nearest to the truth.
+/// The estimate after the rigid motion that brings it nearest to the truth.
 pub fn aligned(estimate: &[Vector3], truth: &[Vector3]) -> Vec<Vector3> {
     assert_eq!(estimate.len(), truth.len());
     let n = truth.len() as f64;

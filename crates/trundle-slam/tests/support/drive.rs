@@ -17,14 +17,14 @@ pub struct Drive {
     pub frames: Vec<DriveFrame>,
 }
 
-/// One image, and what is known of it.
+/// One image and its data.
 pub struct DriveFrame {
     pub stamp: Stamp,
     color: String,
     depth: String,
     /// `world_from_camera`; `None` if the truth has a gap.
     pub truth: Option<Pose3>,
-    /// Of the base, by the wheels.
+    /// Pose of the base by the wheels.
     wheels: Option<Pose3>,
 }
 
@@ -71,20 +71,20 @@ impl Drive {
         Some(CameraMotion::of_base((motion, noise(&motion)), base_from_camera))
     }
 
-    /// Where the camera of frame `i` was.
+    /// True pose of the camera of frame `i`.
     pub fn truth(&self, i: usize) -> Pose3 {
         self.frames[i].truth.unwrap()
     }
 }
 
-/// How far off wheels without a gyro are, as `OdometryConfig` of trundle-estimation has it.
+/// Noise of wheels without a gyro, as in `OdometryConfig` of trundle-estimation.
 fn noise(motion: &Pose2) -> Matrix3<f64> {
-    let (way, turn) = (motion.x.hypot(motion.y), motion.theta.abs());
+    let (distance, turn) = (motion.x.hypot(motion.y), motion.theta.abs());
     let spot = 0.002_f64.powi(2) * turn;
-    let heading = 0.05_f64.powi(2) * turn + 0.02_f64.powi(2) * way;
+    let heading = 0.05_f64.powi(2) * turn + 0.02_f64.powi(2) * distance;
     Matrix3::from_diagonal(&Vector3::new(
-        0.02_f64.powi(2) * way + spot,
-        0.001_f64.powi(2) * way + spot,
+        0.02_f64.powi(2) * distance + spot,
+        0.001_f64.powi(2) * distance + spot,
         heading,
     ))
 }

@@ -25,10 +25,10 @@ fn image(pose: &Pose3, ball: f64) -> RgbdImage {
     let camera = camera();
     let start = pose.transform(Vector3::zeros());
     let ray = |x: usize, y: usize| {
-        let way = pose.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
-        let walls = (0..3).map(|i| ((ROOM_HALF_M[i] * way[i].signum() - start[i]) / way[i], i));
+        let direction = pose.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
+        let walls = (0..3).map(|i| ((ROOM_HALF_M[i] * direction[i].signum() - start[i]) / direction[i], i));
         let (wall, axis) = walls.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
-        let (a, b, c) = (way.dot(&way), way.dot(&start), start.dot(&start) - ball * ball);
+        let (a, b, c) = (direction.dot(&direction), direction.dot(&start), start.dot(&start) - ball * ball);
         let root = (b * b - a * c).sqrt();
         let sphere = (-b - root) / a;
         if sphere > 0.0 {

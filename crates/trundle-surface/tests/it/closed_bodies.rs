@@ -35,7 +35,7 @@ fn directed_edges(mesh: &SurfaceMesh) -> HashMap<(u32, u32), usize> {
     edges
 }
 
-/// Each edge leads as often one way as the other: the surface has no border, and neighbours face the same side.
+/// Each edge has two opposite directions: the surface has no border, and neighbours face the same side.
 fn assert_closed(mesh: &SurfaceMesh) {
     let edges = directed_edges(mesh);
     for ((from, to), count) in &edges {
@@ -89,6 +89,6 @@ fn normals_are_unit_vectors_out_of_the_body() {
         cosines.push((at - centre).normalize().dot(&normal));
     }
     cosines.sort_by(f64::total_cmp);
-    let (least, median) = (cosines[0], cosines[cosines.len() / 2]);
-    assert!(least > 0.9 && median > 0.995, "cosine to the radius: {least} at least, median {median}");
+    let (min, median) = (cosines[0], cosines[cosines.len() / 2]);
+    assert!(min > 0.9 && median > 0.995, "cosine to the radius: {min} at least, median {median}");
 }

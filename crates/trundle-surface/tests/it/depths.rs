@@ -48,7 +48,7 @@ fn near_ball(vertices: &[[f32; 3]]) -> usize {
 }
 
 #[test]
-fn what_is_before_the_wall_is_carved_away_and_what_is_behind_stays() {
+fn space_before_the_wall_is_cleared_and_space_behind_is_kept() {
     let mut map = map_of(&[grey(WALL), grey(BALL)], &[ahead(); 5], voxels_of(0.03));
     assert!(near_ball(&surface_mesh(&map).vertices) > 100);
     look(&mut map, &[grey(WALL)], &[ahead(); 30]);

@@ -18,9 +18,9 @@ fn any_mesh() -> impl Strategy<Value = SurfaceMesh> {
 
 proptest! {
     #[test]
-    fn parts_are_kept_whole_or_dropped_whole(mesh in any_mesh(), least in 0..12_usize) {
-        let kept = mesh.without_specks(least);
-        prop_assert_eq!(&kept.without_specks(least), &kept);
+    fn parts_are_kept_whole_or_dropped_whole(mesh in any_mesh(), min in 0..12_usize) {
+        let kept = mesh.without_specks(min);
+        prop_assert_eq!(&kept.without_specks(min), &kept);
         prop_assert_eq!((kept.vertices.len(), kept.vertices.len()), (kept.normals.len(), kept.colors.len()));
         prop_assert!(kept.triangles.iter().flatten().all(|corner| (*corner as usize) < kept.vertices.len()));
         // The colour of a vertex is its number in the first mesh.
@@ -33,8 +33,8 @@ proptest! {
     }
 
     #[test]
-    fn more_vertices_asked_for_keep_fewer(mesh in any_mesh(), least in 0..12_usize, more in 0..12_usize) {
-        let (few, fewer) = (mesh.without_specks(least), mesh.without_specks(least + more));
+    fn more_vertices_asked_for_keep_fewer(mesh in any_mesh(), min in 0..12_usize, more in 0..12_usize) {
+        let (few, fewer) = (mesh.without_specks(min), mesh.without_specks(min + more));
         prop_assert!(fewer.colors.iter().all(|color| few.colors.contains(color)));
         prop_assert_eq!(mesh.without_specks(1), mesh);
     }

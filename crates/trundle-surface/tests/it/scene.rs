@@ -74,8 +74,8 @@ pub fn around(at: [f64; 3], distance: f64, count: usize) -> Vec<Pose3> {
     let pose = |i: usize| {
         let z = 1.0 - (2.0 * i as f64 + 1.0) / count as f64;
         let (ring, turn) = ((1.0 - z * z).sqrt(), golden * i as f64);
-        let way = Vector3::new(ring * turn.cos(), ring * turn.sin(), z);
-        look_at((Vector3::from(at) + way * distance).into(), at)
+        let ray = Vector3::new(ring * turn.cos(), ring * turn.sin(), z);
+        look_at((Vector3::from(at) + ray * distance).into(), at)
     };
     (0..count).map(pose).collect()
 }

@@ -169,8 +169,8 @@ fn warp(
 #[inline(always)]
 fn sample(patch: &ImagePatch, at: Vector2<f32>, seen: &mut Pixels) -> Option<()> {
     let corner = at.add_scalar((PATCH_RADIUS_PX - TEMPLATE_RADIUS_PX) as f32);
-    let most = 2.0 * (PATCH_RADIUS_PX - TEMPLATE_RADIUS_PX) as f32;
-    if !(corner.x >= 0.0 && corner.y >= 0.0 && corner.x < most && corner.y < most) {
+    let max = 2.0 * (PATCH_RADIUS_PX - TEMPLATE_RADIUS_PX) as f32;
+    if !(corner.x >= 0.0 && corner.y >= 0.0 && corner.x < max && corner.y < max) {
         return None;
     }
     let (left, top) = (corner.x as usize, corner.y as usize);

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{PinholeCamera, Pose3};
 
-/// Most rounds of refinement by the inliers: 5. Source: ours.
+/// Maximum number of rounds of refinement by the inliers: 5. Source: ours.
 const MAX_REFINEMENTS: usize = 5;
 /// Most Gauss-Newton steps of a round: 10. Source: ours.
 const MAX_STEPS: usize = 10;
@@ -47,7 +47,7 @@ impl Consensus<'_> {
             iteration += 1;
             for motion in propose(three_of(self.observations.len(), &mut rng)) {
                 let (cost, inliers) = self.judge(motion);
-                if best.is_none_or(|(least, _)| cost < least) {
+                if best.is_none_or(|(min, _)| cost < min) {
                     best = Some((cost, motion));
                     enough = self.enough(inliers);
                 }
@@ -67,11 +67,11 @@ impl Consensus<'_> {
 
     /// Number of samples after which a sample of three inliers is sufficiently likely, if `inliers` are all inliers \[Fischler81\].
     fn enough(&self, inliers: usize) -> usize {
-        let most = self.config.max_iterations;
+        let max = self.config.max_iterations;
         let all_right = (inliers as f64 / self.observations.len() as f64).powi(3);
         let samples = (1.0 - self.config.confidence).ln() / (1.0 - all_right).ln();
         // Without inliers the quotient is infinite, of either sign; with only inliers it is 0.
-        if all_right > 0.0 { (samples.ceil() as usize).min(most) } else { most }
+        if all_right > 0.0 { (samples.ceil() as usize).min(max) } else { max }
     }
 
     fn inliers(&self, b_from_a: Pose3) -> Vec<usize> {

@@ -115,7 +115,7 @@ fn line_pair(first: &Matrix3<f64>, second: &Matrix3<f64>) -> Option<(f64, [Vecto
     for root in roots(cubic).into_iter().flatten() {
         let conic = first + second * root;
         let apart = -adjoint(&conic).diagonal().min() / conic.norm_squared();
-        if apart > best.map_or(0.0, |(most, ..)| most) {
+        if apart > best.map_or(0.0, |(max, ..)| max) {
             best = Some((apart, root, conic));
         }
     }

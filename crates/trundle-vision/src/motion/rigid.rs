@@ -17,7 +17,7 @@ pub(crate) fn rigid_motion(pairs: &[(Vector3, Vector3)]) -> Option<Pose3> {
     else {
         return None;
     };
-    // Two directions must be seen for the third to follow.
+    // With two observed directions the third follows.
     (singular_values[1] > 1e-9 * singular_values[0]).then_some(())?;
     let mut mirror = Matrix3::identity();
     mirror[(2, 2)] = (u * v_t).determinant().signum();

@@ -159,7 +159,7 @@ fn score_row_plainly(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, sco
 #[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2"))]
 #[cfg_attr(target_arch = "aarch64", target_feature(enable = "neon"))]
 fn score_row_by_blocks(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, scores: &mut [u8]) {
-    let least = Bytes::splat(threshold.saturating_add(1));
+    let min = Bytes::splat(threshold.saturating_add(1));
     for x in starts(scores.len(), BLOCK_PX) {
         let mut windows = [&[0; BLOCK_PX + 2 * CIRCLE_RADIUS_PX]; 2 * CIRCLE_RADIUS_PX + 1];
         for (window, row) in windows.iter_mut().zip(rows) {
@@ -169,7 +169,7 @@ fn score_row_by_blocks(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, s
         let middle = at((CIRCLE_RADIUS_PX, CIRCLE_RADIUS_PX));
         let beyond = |bright: Bytes, dark: Bytes| {
             let difference = bright.saturating_sub(middle).max(middle.saturating_sub(dark));
-            difference.and(difference.at_least(least))
+            difference.and(difference.at_least(min))
         };
         let [top, right, low, left] = [at(CIRCLE[0]), at(CIRCLE[4]), at(CIRCLE[8]), at(CIRCLE[12])];
         let bright = top.max(low).min(left.max(right));
@@ -188,7 +188,7 @@ fn score_row_by_blocks(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, s
     }
 }
 
-/// The highest over all arcs of nine of the least difference between the arc and the middle; 0 if none is on one side.
+/// The highest over all arcs of nine of the smallest difference between the arc and the middle; 0 if none is on one side.
 fn score(circle: [u8; 16], middle: u8) -> u8 {
     let brightest = best_arc!(circle, u8::min, u8::max);
     let darkest = best_arc!(circle, u8::max, u8::min);

@@ -53,14 +53,14 @@ impl Level {
         }
     }
 
-    /// Finds the corners with enough distance from the border for a descriptor, and gradients of at least `least` grey values per px in
+    /// Finds the corners with enough distance from the border for a descriptor, and gradients of at least `min` grey values per px in
     /// every direction.
-    pub fn detect(&mut self, config: &OrbConfig, least: f32) {
+    pub fn detect(&mut self, config: &OrbConfig, min: f32) {
         self.corners.clear();
         if self.width().min(self.height()) > 2 * patch::BORDER_PX && self.width().max(self.height()) <= 65536
         {
             self.blur.run(&self.image, &mut self.blurred);
-            let has_texture = |corner: Corner| texture::min_gradient(&self.blurred, corner) >= least;
+            let has_texture = |corner: Corner| texture::min_gradient(&self.blurred, corner) >= min;
             self.detector.detect(&self.image, config, has_texture, &mut self.corners);
         }
     }

@@ -79,8 +79,8 @@ impl OrbExtractor {
     pub fn extract_into(&mut self, image: &GrayImage, features: &mut Features) {
         self.build_pyramid(image);
         let config = &self.config;
-        let least = config.min_texture as f32 * noise::sigma(image);
-        self.levels.par_iter_mut().for_each(|level| level.detect(config, least));
+        let min = config.min_texture as f32 * noise::sigma(image);
+        self.levels.par_iter_mut().for_each(|level| level.detect(config, min));
         self.choose();
         self.levels.par_iter_mut().for_each(Level::describe);
         self.collect(image, features);

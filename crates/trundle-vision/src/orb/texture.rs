@@ -23,9 +23,9 @@ const COUNT_WEIGHTS: [i16; TEXTURE_STRIDE] = {
 pub(crate) fn min_gradient(image: &GrayImage, corner: Corner) -> f32 {
     let [across, down, both] = tensor(image, corner).map(f64::from);
     let middle = (across + down) / 2.0;
-    let least = (middle - ((across - down) / 2.0).hypot(both)).max(0.0);
+    let min = (middle - ((across - down) / 2.0).hypot(both)).max(0.0);
     // The differences are over two pixels.
-    (least / (4 * TEXTURE_SIDE_PX * TEXTURE_SIDE_PX) as f64).sqrt() as f32
+    (min / (4 * TEXTURE_SIDE_PX * TEXTURE_SIDE_PX) as f64).sqrt() as f32
 }
 
 fn tensor(image: &GrayImage, corner: Corner) -> [i32; 3] {
@@ -71,18 +71,18 @@ mod tests {
 
     const MIDDLE: Corner = Corner { x: 16, y: 16, score: 20 };
 
-    fn least(value: impl Fn(f64, f64) -> f64) -> f32 {
+    fn min(value: impl Fn(f64, f64) -> f64) -> f32 {
         let pixel = |x: usize, y: usize| value(x as f64 - 16.0, y as f64 - 16.0).round() as u8;
         min_gradient(&GrayImage::from_fn(33, 33, pixel), MIDDLE)
     }
 
     #[test]
     fn an_edge_has_no_texture_and_a_corner_has() {
-        assert_eq!(least(|_, _| 90.0), 0.0);
-        assert_eq!(least(|x, _| 128.0 + 8.0 * x), 0.0);
-        assert!(least(|x, y| (128.0 + 20.0 * (0.6 * x + 0.8 * y)).clamp(50.0, 200.0)) < 0.5);
-        assert!(least(|x, y| if x > 0.0 && y > 0.0 { 200.0 } else { 50.0 }) > 10.0);
-        let bump = least(|x, y| 90.0 + 3.0 * x.abs() + 3.0 * y.abs());
+        assert_eq!(min(|_, _| 90.0), 0.0);
+        assert_eq!(min(|x, _| 128.0 + 8.0 * x), 0.0);
+        assert!(min(|x, y| (128.0 + 20.0 * (0.6 * x + 0.8 * y)).clamp(50.0, 200.0)) < 0.5);
+        assert!(min(|x, y| if x > 0.0 && y > 0.0 { 200.0 } else { 50.0 }) > 10.0);
+        let bump = min(|x, y| 90.0 + 3.0 * x.abs() + 3.0 * y.abs());
         assert!((bump - 2.9).abs() < 0.1, "{bump}");
     }
 

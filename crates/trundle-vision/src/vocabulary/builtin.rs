@@ -8,13 +8,11 @@ static BYTES: &[u8] = include_bytes!("../../data/vocabulary.bin");
 
 static BUILTIN: OnceLock<Arc<Vocabulary>> = OnceLock::new();
 
-impl Vocabulary {
-    /// The vocabulary that is part of the program, read once: every call hands out the same one.
-    pub fn builtin() -> Arc<Self> {
-        let read =
-            || Arc::new(Self::from_bytes(BYTES).expect("invariant: the program's own vocabulary is whole"));
-        Arc::clone(BUILTIN.get_or_init(read))
-    }
+/// See [`Vocabulary::builtin`].
+pub(super) fn builtin() -> Arc<Vocabulary> {
+    let read =
+        || Arc::new(Vocabulary::from_bytes(BYTES).expect("invariant: the program's own vocabulary is whole"));
+    Arc::clone(BUILTIN.get_or_init(read))
 }
 
 #[cfg(test)]

@@ -31,53 +31,44 @@ pub enum VocabularyError {
     Invalid(#[from] Invalid),
 }
 
-impl Vocabulary {
-    /// The vocabulary as bytes with version and checksum, little endian. They are the head, the descriptors of all nodes level by level (32
-    /// bytes each), the number of children of the root and each node (a byte each), and the weights of the words (4 bytes each).
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let words = self.nodes().filter(|node| self.is_word(*node));
-        let weights: Vec<f32> = words.map(|word| self.weight(word)).collect();
-        let shape = [self.branching(), self.depth(), self.nodes().len(), weights.len()];
-        let mut bytes = MAGIC.to_vec();
-        bytes.extend(shape.into_iter().flat_map(|number| (number as u32).to_le_bytes()));
-        bytes.extend([0; 8]);
-        let longs = self.nodes().flat_map(|node| self.descriptor(node).0);
-        bytes.extend(longs.flat_map(u64::to_le_bytes));
-        bytes.push(self.children(0) as u8);
-        bytes.extend(self.nodes().map(|node| self.children(node) as u8));
-        bytes.extend(weights.into_iter().flat_map(f32::to_le_bytes));
-        let sum = checksum(&bytes);
-        bytes[HEAD_BYTES - 8..HEAD_BYTES].copy_from_slice(&sum.to_le_bytes());
-        bytes
-    }
+/// See [`Vocabulary::to_bytes`].
+pub(super) fn to_bytes(vocabulary: &Vocabulary) -> Vec<u8> {
+    let words = vocabulary.nodes().filter(|node| vocabulary.is_word(*node));
+    let weights: Vec<f32> = words.map(|word| vocabulary.weight(word)).collect();
+    let shape = [vocabulary.branching(), vocabulary.depth(), vocabulary.nodes().len(), weights.len()];
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(shape.into_iter().flat_map(|number| (number as u32).to_le_bytes()));
+    bytes.extend([0; 8]);
+    let longs = vocabulary.nodes().flat_map(|node| vocabulary.descriptor(node).0);
+    bytes.extend(longs.flat_map(u64::to_le_bytes));
+    bytes.push(vocabulary.children(0) as u8);
+    bytes.extend(vocabulary.nodes().map(|node| vocabulary.children(node) as u8));
+    bytes.extend(weights.into_iter().flat_map(f32::to_le_bytes));
+    let sum = checksum(&bytes);
+    bytes[HEAD_BYTES - 8..HEAD_BYTES].copy_from_slice(&sum.to_le_bytes());
+    bytes
+}
 
-    /// Reads [`Vocabulary::to_bytes`].
-    ///
-    /// # Errors
-    /// When the bytes are of another kind or version, cut off, damaged, or the nodes are not a tree.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, VocabularyError> {
-        let bad = |problem: String| Err(VocabularyError::Bytes(problem));
-        if bytes.len() < HEAD_BYTES || bytes[..7] != MAGIC[..7] {
-            return bad("no trundle vocabulary".to_owned());
-        }
-        if bytes[7] != MAGIC[7] {
-            return bad(format!("vocabulary of version {}, expected {}", bytes[7], MAGIC[7]));
-        }
-        let [branching, depth, nodes, words] = std::array::from_fn(|i| number(&bytes[8 + 4 * i..]) as usize);
-        let expected =
-            (HEAD_BYTES + 1).saturating_add(nodes.saturating_mul(33)).saturating_add(words.saturating_mul(4));
-        if bytes.len() != expected {
-            return bad(format!(
-                "vocabulary of {} bytes, expected {expected} for {nodes} nodes",
-                bytes.len()
-            ));
-        }
-        if checksum(bytes).to_le_bytes() != bytes[HEAD_BYTES - 8..HEAD_BYTES] {
-            return bad("the vocabulary is damaged: its checksum is wrong".to_owned());
-        }
-        check_shape(branching, depth)?;
-        Ok(Self::from_tree(branching, depth, tree(&bytes[HEAD_BYTES..], nodes, branching)?)?)
+/// See [`Vocabulary::from_bytes`].
+pub(super) fn from_bytes(bytes: &[u8]) -> Result<Vocabulary, VocabularyError> {
+    let bad = |problem: String| Err(VocabularyError::Bytes(problem));
+    if bytes.len() < HEAD_BYTES || bytes[..7] != MAGIC[..7] {
+        return bad("no trundle vocabulary".to_owned());
     }
+    if bytes[7] != MAGIC[7] {
+        return bad(format!("vocabulary of version {}, expected {}", bytes[7], MAGIC[7]));
+    }
+    let [branching, depth, nodes, words] = std::array::from_fn(|i| number(&bytes[8 + 4 * i..]) as usize);
+    let expected =
+        (HEAD_BYTES + 1).saturating_add(nodes.saturating_mul(33)).saturating_add(words.saturating_mul(4));
+    if bytes.len() != expected {
+        return bad(format!("vocabulary of {} bytes, expected {expected} for {nodes} nodes", bytes.len()));
+    }
+    if checksum(bytes).to_le_bytes() != bytes[HEAD_BYTES - 8..HEAD_BYTES] {
+        return bad("the vocabulary is damaged: its checksum is wrong".to_owned());
+    }
+    check_shape(branching, depth)?;
+    Ok(Vocabulary::from_tree(branching, depth, tree(&bytes[HEAD_BYTES..], nodes, branching)?)?)
 }
 
 /// The nodes of a file without its head.

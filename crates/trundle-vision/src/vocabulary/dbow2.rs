@@ -2,44 +2,35 @@
 
 use super::Vocabulary;
 use super::compact::VocabularyError;
-use super::listed::ListedNode;
+use super::listed::{ListedNode, from_list};
 use crate::Descriptor;
 use std::fmt::Write;
 
-impl Vocabulary {
-    /// The text format of DBoW2 for ORB-SLAM programs. The first line is `branching depth 0 0` (L1 score, tf-idf weights); each node, in
-    /// the order of numbers from 1, is a line `parent is_leaf 32 bytes weight`. The text has no newline at its end: some readers would read
-    /// another node after it.
-    pub fn to_dbow2_text(&self) -> String {
-        let mut text = format!("{} {} 0 0", self.branching(), self.depth());
-        for node in self.nodes() {
-            write!(text, "\n{} {}", self.parent(node), u8::from(self.is_word(node)))
-                .expect("invariant: strings grow");
-            for byte in self.descriptor(node).0.iter().flat_map(|word| word.to_le_bytes()) {
-                write!(text, " {byte}").expect("invariant: strings grow");
-            }
-            write!(text, " {}", self.weight(node)).expect("invariant: strings grow");
+/// See [`Vocabulary::to_dbow2_text`].
+pub(super) fn to_text(vocabulary: &Vocabulary) -> String {
+    let mut text = format!("{} {} 0 0", vocabulary.branching(), vocabulary.depth());
+    for node in vocabulary.nodes() {
+        write!(text, "\n{} {}", vocabulary.parent(node), u8::from(vocabulary.is_word(node)))
+            .expect("invariant: strings grow");
+        for byte in vocabulary.descriptor(node).0.iter().flat_map(|word| word.to_le_bytes()) {
+            write!(text, " {byte}").expect("invariant: strings grow");
         }
-        text
+        write!(text, " {}", vocabulary.weight(node)).expect("invariant: strings grow");
     }
+    text
+}
 
-    /// Reads the text form of DBoW2 (see [`Vocabulary::to_dbow2_text`]). Nodes get new numbers, level by level; scores
-    /// and weights other than L1 and tf-idf are taken as these.
-    ///
-    /// # Errors
-    /// When a line is invalid, with its number, or the nodes are not a tree.
-    pub fn from_dbow2_text(text: &str) -> Result<Self, VocabularyError> {
-        let mut lines = (1..).zip(text.lines());
-        let (_, head) = lines.next().ok_or_else(|| bad_line(1, "the file is empty"))?;
-        let shape = numbers::<usize>(head, 1)?;
-        let [branching, depth, ..] = shape[..] else {
-            return Err(bad_line(1, "expected 'branching depth scoring weighting'"));
-        };
-        let rest = lines.filter(|(_, line)| !line.trim().is_empty());
-        let list: Vec<ListedNode> =
-            rest.map(|(number, line)| node(line, number)).collect::<Result<_, _>>()?;
-        Ok(Self::from_list(branching, depth, &list)?)
-    }
+/// See [`Vocabulary::from_dbow2_text`].
+pub(super) fn from_text(text: &str) -> Result<Vocabulary, VocabularyError> {
+    let mut lines = (1..).zip(text.lines());
+    let (_, head) = lines.next().ok_or_else(|| bad_line(1, "the file is empty"))?;
+    let shape = numbers::<usize>(head, 1)?;
+    let [branching, depth, ..] = shape[..] else {
+        return Err(bad_line(1, "expected 'branching depth scoring weighting'"));
+    };
+    let rest = lines.filter(|(_, line)| !line.trim().is_empty());
+    let list: Vec<ListedNode> = rest.map(|(number, line)| node(line, number)).collect::<Result<_, _>>()?;
+    Ok(from_list(branching, depth, &list)?)
 }
 
 fn node(line: &str, number: usize) -> Result<ListedNode, VocabularyError> {

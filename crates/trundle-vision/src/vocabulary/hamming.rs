@@ -26,7 +26,7 @@ fn nearest_plainly(candidates: &[Descriptor], descriptor: &Descriptor) -> Option
     let mut best: Option<(usize, u32)> = None;
     for (i, candidate) in candidates.iter().enumerate() {
         let distance = candidate.distance(descriptor);
-        if best.is_none_or(|(_, least)| distance < least) {
+        if best.is_none_or(|(_, min)| distance < min) {
             best = Some((i, distance));
         }
     }

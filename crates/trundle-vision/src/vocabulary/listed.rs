@@ -15,20 +15,18 @@ pub(super) struct ListedNode {
     pub weight: f32,
 }
 
-impl Vocabulary {
-    /// A tree from its nodes without the root, in any order with parents before children.
-    ///
-    /// # Errors
-    /// When the shape is out of range or the list is empty. When a parent follows its child, or is a leaf. When a node has too many
-    /// children or is too deep, or an inner node has none. When a weight is negative or not finite. The error gives the node.
-    pub(super) fn from_list(branching: usize, depth: usize, list: &[ListedNode]) -> Result<Self, Invalid> {
-        check_shape(branching, depth)?;
-        if list.is_empty() {
-            return Err(Invalid::new("nodes of the vocabulary", 0, "", "1 or more"));
-        }
-        let children = Children::of(list, branching)?;
-        Self::from_tree(branching, depth, in_breadth(list, &children))
+/// A tree from its nodes without the root, in any order with parents before children.
+///
+/// # Errors
+/// When the shape is out of range or the list is empty. When a parent follows its child, or is a leaf. When a node has too many
+/// children or is too deep, or an inner node has none. When a weight is negative or not finite. The error gives the node.
+pub(super) fn from_list(branching: usize, depth: usize, list: &[ListedNode]) -> Result<Vocabulary, Invalid> {
+    check_shape(branching, depth)?;
+    if list.is_empty() {
+        return Err(Invalid::new("nodes of the vocabulary", 0, "", "1 or more"));
     }
+    let children = Children::of(list, branching)?;
+    Vocabulary::from_tree(branching, depth, in_breadth(list, &children))
 }
 
 /// Passes a shape that a vocabulary may have.
@@ -151,7 +149,7 @@ mod tests {
         let refused = |change: &dyn Fn(&mut Vec<ListedNode>)| {
             let mut list = small();
             change(&mut list);
-            Vocabulary::from_list(2, 2, &list).unwrap_err().field
+            from_list(2, 2, &list).unwrap_err().field
         };
         assert_eq!(refused(&|list| list[2].parent = 5), "parent of vocabulary node 3");
         assert_eq!(refused(&|list| list[4].parent = 3), "parent of vocabulary node 5");
@@ -160,7 +158,7 @@ mod tests {
         assert_eq!(refused(&|list| list[5].parent = 1), "place of vocabulary node 6");
         assert_eq!(refused(&|list| list[3].is_leaf = false), "children of vocabulary node 4");
         assert_eq!(refused(&|list| list.clear()), "nodes of the vocabulary");
-        assert_eq!(Vocabulary::from_list(2, 1, &small()).unwrap_err().field, "levels of the vocabulary");
-        assert_eq!(Vocabulary::from_list(99, 2, &small()).unwrap_err().field, "branching of the vocabulary");
+        assert_eq!(from_list(2, 1, &small()).unwrap_err().field, "levels of the vocabulary");
+        assert_eq!(from_list(99, 2, &small()).unwrap_err().field, "branching of the vocabulary");
     }
 }

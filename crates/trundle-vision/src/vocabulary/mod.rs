@@ -18,6 +18,7 @@ mod builtin;
 mod clusters;
 mod compact;
 mod dbow2;
+mod entry_points;
 mod hamming;
 mod listed;
 mod majority;

@@ -50,9 +50,9 @@ impl PlaceIndex {
             self.places.push(place);
         }
         self.places[slot as usize] = place;
-        let most = bag.entries().last().map_or(0, |(word, _)| *word as usize + 1);
-        if self.shown.len() < most {
-            self.shown.resize_with(most, Vec::new);
+        let max = bag.entries().last().map_or(0, |(word, _)| *word as usize + 1);
+        if self.shown.len() < max {
+            self.shown.resize_with(max, Vec::new);
         }
         for &(word, weight) in bag.entries() {
             self.shown[word as usize].push(Entry { slot, weight });
@@ -90,8 +90,8 @@ impl PlaceIndex {
             .map(|(place, common)| (*place, common))
             .filter(|(place, _)| is_asked_for(*place))
             .collect();
-        let most = asked.iter().map(|(_, common)| common.words).max().unwrap_or(0);
-        let enough = asked.iter().filter(|(_, common)| common.words as f32 >= min_share * most as f32);
+        let max = asked.iter().map(|(_, common)| common.words).max().unwrap_or(0);
+        let enough = asked.iter().filter(|(_, common)| common.words as f32 >= min_share * max as f32);
         let mut found: Vec<(u32, f32)> = enough.map(|(place, common)| (*place, common.similarity)).collect();
         found.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         found
@@ -130,8 +130,8 @@ mod tests {
         let bags = [bag(&[1, 2, 3, 4, 5]), bag(&[1, 2, 3, 4]), bag(&[3, 4, 5]), bag(&[9])];
         (10..).zip(&bags).for_each(|(place, bag)| index.add(place, bag));
         let asked = bag(&[1, 2, 3, 4, 5]);
-        let places = |least, allowed: fn(u32) -> bool| -> Vec<u32> {
-            index.query_sharing(&asked, least, allowed).into_iter().map(|(place, _)| place).collect()
+        let places = |min, allowed: fn(u32) -> bool| -> Vec<u32> {
+            index.query_sharing(&asked, min, allowed).into_iter().map(|(place, _)| place).collect()
         };
         assert_eq!(places(0.0, |_| true), [10, 12, 11]);
         assert_eq!(places(0.8, |_| true), [10, 11]);

@@ -1,7 +1,7 @@
 //! Trains a vocabulary.
 
 use super::clusters::{Cluster, clusters};
-use super::listed::ListedNode;
+use super::listed::{ListedNode, from_list};
 use super::tree::{MAX_BRANCHING, MAX_DEPTH};
 use super::{NodeId, Vocabulary};
 use crate::Descriptor;
@@ -43,42 +43,40 @@ impl VocabularyConfig {
     }
 }
 
-impl Vocabulary {
-    /// Trains a vocabulary on the descriptors of many images: hierarchical k-medians, words weighted by ln(images /
-    /// images that show them). A word that none shows (each was nearer to another median in the end) weighs as much as one
-    /// that a single image shows. The same images and seed give the same tree on any number of threads.
-    ///
-    /// # Errors
-    /// When the configuration is invalid or no descriptor is given.
-    pub fn train(images: &[Vec<Descriptor>], config: &VocabularyConfig, seed: u64) -> Result<Self, Invalid> {
-        let config = config.clone().validated()?;
-        let descriptors: Vec<Descriptor> = images.iter().flatten().copied().collect();
-        if descriptors.is_empty() {
-            return Err(Invalid::new("descriptors to train on", 0, "", "1 or more"));
-        }
-        let root = divide(&descriptors, &config, 0, seed);
-        let mut list = Vec::new();
-        list_below(&root, 0, &mut list);
-        let mut vocabulary = Self::from_list(config.branching, config.depth, &list)?;
-        vocabulary.weigh(images);
-        Ok(vocabulary)
+/// See [`Vocabulary::train`].
+pub(super) fn train(
+    images: &[Vec<Descriptor>],
+    config: &VocabularyConfig,
+    seed: u64,
+) -> Result<Vocabulary, Invalid> {
+    let config = config.clone().validated()?;
+    let descriptors: Vec<Descriptor> = images.iter().flatten().copied().collect();
+    if descriptors.is_empty() {
+        return Err(Invalid::new("descriptors to train on", 0, "", "1 or more"));
     }
+    let root = divide(&descriptors, &config, 0, seed);
+    let mut list = Vec::new();
+    list_below(&root, 0, &mut list);
+    let mut vocabulary = from_list(config.branching, config.depth, &list)?;
+    weigh(&mut vocabulary, images);
+    Ok(vocabulary)
+}
 
-    fn weigh(&mut self, images: &[Vec<Descriptor>]) {
-        let words_of = |image: &Vec<Descriptor>| {
-            let mut words: Vec<NodeId> = image.iter().map(|descriptor| self.word(descriptor)).collect();
-            words.sort_unstable();
-            words.dedup();
-            words
-        };
-        let words: Vec<Vec<NodeId>> = images.par_iter().map(words_of).collect();
-        let mut images_with = vec![0_u32; self.nodes().len() + 1];
-        words.iter().flatten().for_each(|&word| images_with[word as usize] += 1);
-        let is_word: Vec<bool> = self.nodes().map(|node| self.is_word(node)).collect();
-        for (word, _) in (1..).zip(is_word).filter(|(_, is_word)| *is_word) {
-            let count = images_with[word as usize].max(1);
-            self.set_weight(word, (images.len() as f32 / count as f32).ln());
-        }
+/// Weighs the words by the number of images that show them.
+fn weigh(vocabulary: &mut Vocabulary, images: &[Vec<Descriptor>]) {
+    let words_of = |image: &Vec<Descriptor>| {
+        let mut words: Vec<NodeId> = image.iter().map(|descriptor| vocabulary.word(descriptor)).collect();
+        words.sort_unstable();
+        words.dedup();
+        words
+    };
+    let words: Vec<Vec<NodeId>> = images.par_iter().map(words_of).collect();
+    let mut images_with = vec![0_u32; vocabulary.nodes().len() + 1];
+    words.iter().flatten().for_each(|&word| images_with[word as usize] += 1);
+    let is_word: Vec<bool> = vocabulary.nodes().map(|node| vocabulary.is_word(node)).collect();
+    for (word, _) in (1..).zip(is_word).filter(|(_, is_word)| *is_word) {
+        let count = images_with[word as usize].max(1);
+        vocabulary.set_weight(word, (images.len() as f32 / count as f32).ln());
     }
 }
 

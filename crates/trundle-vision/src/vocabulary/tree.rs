@@ -47,9 +47,9 @@ impl Tree {
     }
 }
 
-/// Most children of a node: 64. A file with more is refused. Source: ours.
+/// Maximum number of children of a node: 64. A file with more is refused. Source: ours.
 pub(super) const MAX_BRANCHING: usize = 64;
-/// Most levels below the root: 10. A file with more is refused. Source: ours.
+/// Maximum number of levels below the root: 10. A file with more is refused. Source: ours.
 pub(super) const MAX_DEPTH: usize = 10;
 
 impl Vocabulary {
@@ -77,7 +77,7 @@ impl Vocabulary {
         Ok(Self { branching, depth, descriptors: tree.descriptors, first_child, parent, weight, level_end })
     }
 
-    /// Most children of a node.
+    /// Maximum number of children of a node.
     pub fn branching(&self) -> usize {
         self.branching
     }
@@ -177,12 +177,12 @@ fn first_children(counts: &[u8], nodes: usize) -> Result<Vec<NodeId>, Invalid> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::listed::small;
+    use super::super::listed::{from_list, small};
     use super::*;
 
     #[test]
     fn a_descriptor_goes_down_to_the_nearest_leaf() {
-        let tree = Vocabulary::from_list(2, 2, &small()).unwrap();
+        let tree = from_list(2, 2, &small()).unwrap();
         assert_eq!((tree.word_count(), tree.nodes().len()), (4, 6));
         let word = tree.word(&Descriptor([0x3C, 0, 0, 0]));
         assert_eq!(tree.descriptor(word).0[0], 0x0C, "below the first of equally near ones");

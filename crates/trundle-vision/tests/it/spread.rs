@@ -29,7 +29,7 @@ fn every_part_of_an_image_has_its_share() {
 }
 
 #[test]
-fn as_many_as_asked_for_and_all_within_the_image() {
+fn the_requested_number_of_corners_lies_within_the_image() {
     let image = picture((320, 240), |p| p);
     for asked in [1, 10, 333] {
         let features = extracted(&image, asked);

@@ -1,6 +1,6 @@
 //! Picture of a plan on its map.
 
-use super::palette::{DEAR, FORBIDDEN, GOAL, PLAN, SLOW, START, SWEPT, way_point_dots};
+use super::palette::{FORBIDDEN, GOAL, HIGH_COST, PLAN, SLOW, START, SWEPT, way_point_dots};
 use crate::color::Color;
 use crate::map::{DotStyle, LineStyle, MapPicture, PoseStyle};
 use trundle_core::{Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
@@ -54,8 +54,9 @@ impl<'a> PlanScene<'a> {
             picture = picture.tint("slow by the speed mask", mask.geometry, shares.collect(), SLOW);
         }
         if let Some(mask) = self.keep_out {
-            let dear = mask.shares.iter().map(|share| if *share < 1.0 { 0.8 * share } else { 0.0 });
-            picture = picture.tint("high cost by the keep-out mask", mask.geometry, dear.collect(), DEAR);
+            let expensive = mask.shares.iter().map(|share| if *share < 1.0 { 0.8 * share } else { 0.0 });
+            picture =
+                picture.tint("high cost by the keep-out mask", mask.geometry, expensive.collect(), HIGH_COST);
         }
         self.forbidden(picture, FORBIDDEN)
     }
@@ -81,9 +82,9 @@ impl<'a> PlanScene<'a> {
 
     /// The way-points between start and goals, which have separate marks.
     pub(super) fn between(&self) -> Vec<Vector2> {
-        const SAME: f64 = 1e-3;
+        const SAME_POINT_M: f64 = 1e-3;
         let is_end = |p: &Vector2| {
-            self.goals.iter().chain([&self.start]).any(|end| (p - end.position()).norm() < SAME)
+            self.goals.iter().chain([&self.start]).any(|end| (p - end.position()).norm() < SAME_POINT_M)
         };
         self.way_points.iter().filter(|p| !is_end(p)).copied().collect()
     }

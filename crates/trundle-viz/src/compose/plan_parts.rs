@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn parts_are_drawn_and_nothing_does_not_panic() {
         let grid = OccupancyGrid::from_ascii(0.1, "#####\n#...#\n#...#\n#####").unwrap();
-        let way = [Vector2::new(0.15, 0.15), Vector2::new(0.35, 0.25)];
+        let path = [Vector2::new(0.15, 0.15), Vector2::new(0.35, 0.25)];
         let mask = MaskShares { geometry: *grid.geometry(), shares: vec![0.4; 20] };
         let scene = PlanScene {
             grid: &grid,
@@ -86,9 +86,9 @@ mod tests {
             goals: &[Pose2::new(0.35, 0.25, 0.0)],
             replaced: &[],
             lanes: &[],
-            route: &way,
-            way_points: &way,
-            curve: &way,
+            route: &path,
+            way_points: &path,
+            curve: &path,
             footprint: &Footprint::KOBUKI,
             keep_out: Some(&mask),
             slow: Some(&mask),
@@ -97,9 +97,9 @@ mod tests {
             geometry: *grid.geometry(),
             distances,
             corridors,
-            active: &way,
+            active: &path,
         };
-        let triangle = [vec![way[0], way[1], Vector2::new(0.3, 0.1)]];
+        let triangle = [vec![path[0], path[1], Vector2::new(0.3, 0.1)]];
         let full = plan_part_pictures(&scene, &parts(&[0.1; 20], &triangle));
         let bare = plan_part_pictures(&scene, &parts(&[], &[]));
         assert!(full.iter().zip(&bare).all(|(full, bare)| full != bare && full[1..4] == *b"PNG"));

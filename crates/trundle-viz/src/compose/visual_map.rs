@@ -13,7 +13,7 @@ pub struct VisualMapScene<'a> {
     /// The landmarks.
     pub landmarks: &'a [Vector3],
     /// The camera's trajectory.
-    pub way: &'a [Vector3],
+    pub path: &'a [Vector3],
     /// Positions of the keyframes.
     pub keyframes: &'a [Vector3],
     /// Pairs of keyframes that see the same landmarks: the covisibility graph.
@@ -26,11 +26,11 @@ pub struct VisualMapScene<'a> {
 ///
 /// The view is along the axis with the smallest motion of the camera; the axes are named. Points that are not finite are left out.
 pub fn visual_map_picture(scene: &VisualMapScene) -> (Vec<u8>, Vec<LegendItem>) {
-    let (right, up) = principal_axes(if is_way(scene.way) { scene.way } else { scene.landmarks });
+    let (right, up) = principal_axes(if is_extended(scene.path) { scene.path } else { scene.landmarks });
     let flat = |p: &Vector3| Vector2::new(p[right], p[up]);
     let points = |points: &[Vector3]| -> Vec<Vector2> { points.iter().map(flat).filter(is_finite).collect() };
     let name = |axis: usize| ["x, m", "y, m", "z, m"][axis];
-    let (middle, half) = middle_of([scene.landmarks, scene.way, scene.keyframes].map(points));
+    let (middle, half) = middle_of([scene.landmarks, scene.path, scene.keyframes].map(points));
     let picture = MapPicture::blank()
         .window(middle, half)
         .axes(name(right), name(up))
@@ -40,16 +40,20 @@ pub fn visual_map_picture(scene: &VisualMapScene) -> (Vec<u8>, Vec<LegendItem>) 
             &links(scene.covisible, flat),
             LineStyle::solid(Color::SKY.alpha(120)).width(0.5).plain(),
         )
-        .polyline("the camera's way", &scene.way.iter().map(flat).collect::<Vec<_>>(), estimate_line())
+        .polyline(
+            "the camera's trajectory",
+            &scene.path.iter().map(flat).collect::<Vec<_>>(),
+            estimate_line(),
+        )
         .dots("keyframes", &points(scene.keyframes), DotStyle::circles(ESTIMATE).radius(1.6))
         .polyline("closed loops", &links(scene.loops, flat), LineStyle::solid(GOAL).width(1.8).plain());
     (picture.clone().without_legend().to_png(), picture.legend())
 }
 
 /// Whether a camera travelled far enough, 1 m, to determine which direction is up.
-fn is_way(way: &[Vector3]) -> bool {
-    let from = |a: &Vector3| way.iter().any(|b| (b - a).amax() > 1.0);
-    way.iter().find(|a| a.iter().all(|v| v.is_finite())).is_some_and(from)
+fn is_extended(path: &[Vector3]) -> bool {
+    let from = |a: &Vector3| path.iter().any(|b| (b - a).amax() > 1.0);
+    path.iter().find(|a| a.iter().all(|v| v.is_finite())).is_some_and(from)
 }
 
 /// Part of the points at either end of each axis that the picture need not show. Source: ours.
@@ -94,7 +98,7 @@ mod tests {
             (Vector3::new(0.0, 0.0, 0.4), Vector3::new(3.0, 1.0, 0.4), Vector3::repeat(f64::NAN));
         let scene = VisualMapScene {
             landmarks: &[a, b, nan],
-            way: &[a, b],
+            path: &[a, b],
             keyframes: &[a, b],
             covisible: &[(a, b)],
             loops: &[(a, b)],

@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lengths_are_said_as_people_say_them() {
+    fn lengths_have_readable_units() {
         let labels = [2000.0, 50.0, 1.0, 0.5, 0.02, 0.005].map(length_label);
         assert_eq!(labels, ["2 km", "50 m", "1 m", "50 cm", "2 cm", "5 mm"]);
     }

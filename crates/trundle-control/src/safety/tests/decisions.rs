@@ -70,7 +70,7 @@ fn a_robot_leaves_its_station_backward_though_its_camera_sees_nothing() {
 }
 
 #[test]
-fn whose_wheels_count_nothing_goes_slowly_and_says_so() {
+fn a_robot_whose_wheels_count_nothing_drives_slowly_with_that_reason() {
     let twist = Twist2::new(0.5, 0.4);
     let report = monitor().check(&SafetyInput { motion: MotionSense::Sight, ..fresh(twist) });
     assert_eq!(report.action, SafetyAction::Slow(SlowReason::WheelsCountNothing));
@@ -150,7 +150,7 @@ fn a_turn_stops_before_the_corner_meets_the_wall() {
     // A post that the front left corner comes to after some 30 deg.
     let (mut theta, mut rate) = (0.0_f64, 0.0_f64);
     let post = Vector2::new(0.0, 0.44);
-    let mut least = f64::INFINITY;
+    let mut min = f64::INFINITY;
     for _ in 0..400 {
         let at = Pose2::new(0.0, 0.0, theta).inverse().transform(post);
         let scan = scan(at.y.atan2(at.x), 0.01, &[at.norm()]);
@@ -159,9 +159,9 @@ fn a_turn_stops_before_the_corner_meets_the_wall() {
         rate = twist.omega.clamp(rate - 3.0 * 0.02, rate + 3.0 * 0.02);
         theta += rate * 0.02;
         let at = Pose2::new(0.0, 0.0, theta).inverse().transform(post);
-        least = least.min(RoundedHull::exact(&cart_outline()).signed_distance(at));
+        min = min.min(RoundedHull::exact(&cart_outline()).signed_distance(at));
     }
-    assert!(least > 0.005 && theta > 0.5, "{least} m left after {theta} rad");
+    assert!(min > 0.005 && theta > 0.5, "{min} m left after {theta} rad");
 }
 
 proptest! {

@@ -37,8 +37,8 @@ impl Robot {
     fn drive(&mut self, command: f64, deceleration: f64) {
         self.commands.push_back(command);
         let effective = self.commands.pop_front().unwrap_or(0.0);
-        let most = deceleration * STEP_S;
-        let next = self.speed + (effective - self.speed).clamp(-most, most);
+        let max = deceleration * STEP_S;
+        let next = self.speed + (effective - self.speed).clamp(-max, max);
         self.at += (self.speed + next) / 2.0 * STEP_S;
         self.speed = next;
     }

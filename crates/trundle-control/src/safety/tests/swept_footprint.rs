@@ -44,11 +44,11 @@ impl Draw {
     }
 
     /// Zero in one of three cases, small in another.
-    fn rate(&mut self, most: f64) -> f64 {
+    fn rate(&mut self, max: f64) -> f64 {
         match self.below(3) {
             0 => 0.0,
-            1 => self.within(-most, most) / 20.0,
-            _ => self.within(-most, most),
+            1 => self.within(-max, max) / 20.0,
+            _ => self.within(-max, max),
         }
     }
 }

@@ -191,7 +191,7 @@ pub struct ActionState {
 pub enum ActionStatus {
     /// The action has not started.
     Waiting,
-    /// Under way.
+    /// In execution.
     Running,
     /// Done.
     Finished,

@@ -100,8 +100,8 @@ fn change_digit(input: &mut Vec<u8>, at: usize, rng: &mut ChaCha8Rng) {
 }
 
 fn piece(rng: &mut ChaCha8Rng) -> usize {
-    let most = [4, 32, MAX_PIECE][rng.random_range(0..3)];
-    rng.random_range(1..=most)
+    let max = [4, 32, MAX_PIECE][rng.random_range(0..3)];
+    rng.random_range(1..=max)
 }
 
 fn copy_of(source: &[u8], rng: &mut ChaCha8Rng) -> Vec<u8> {

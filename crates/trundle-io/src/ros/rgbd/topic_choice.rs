@@ -53,7 +53,7 @@ pub(super) fn choose_color<'a>(
         return named(topics, asked, &[ImageKind::Color, ImageKind::Grey], "colour images");
     }
     let of = |kind| topics.iter().filter(move |topic| topic.kind == kind);
-    let found = most(of(ImageKind::Color)).or_else(|| most(of(ImageKind::Grey)));
+    let found = max(of(ImageKind::Color)).or_else(|| max(of(ImageKind::Grey)));
     found.ok_or_else(|| format!("no colour images, expected some; its images: {}", listing(topics)))
 }
 
@@ -74,7 +74,7 @@ pub(super) fn choose_depth<'a>(
     let registered: Vec<&ImageTopic> =
         all.iter().copied().filter(|topic| topic.frame == color.frame).collect();
     let candidates = if registered.is_empty() { all } else { registered };
-    let found = most(candidates.iter().copied())
+    let found = max(candidates.iter().copied())
         .ok_or_else(|| format!("no depth images, expected some; its images: {}", listing(topics)))?;
     if candidates.iter().any(|topic| base_topic(&topic.name) != base_topic(&found.name)) {
         let names: Vec<&str> = candidates.iter().map(|topic| topic.name.as_str()).collect();
@@ -89,7 +89,7 @@ pub(super) fn choose_depth<'a>(
 }
 
 /// The topic with the most messages, of equals the first.
-fn most<'a>(topics: impl Iterator<Item = &'a ImageTopic>) -> Option<&'a ImageTopic> {
+fn max<'a>(topics: impl Iterator<Item = &'a ImageTopic>) -> Option<&'a ImageTopic> {
     topics.reduce(|best, topic| if topic.count > best.count { topic } else { best })
 }
 

@@ -58,12 +58,12 @@ struct Turned {
 
 impl Pyramid {
     /// The best pose of the lattice for a query, apart (cells, rad) from all of `known`, by branch and bound. `None` if all poses score
-    /// less than `least`. A search that spends `budget` ends with the best pose so far.
+    /// less than `min`. A search that spends `budget` ends with the best pose so far.
     pub(crate) fn search(
         &self,
         query: &Query<'_>,
         known: &[FoundPose],
-        (apart, least): ((f64, f64), f64),
+        (apart, min): ((f64, f64), f64),
         budget: &LookupBudget,
     ) -> Option<FoundPose> {
         let reach = ((query.reach.0 / 2.0).ceil() as i32, (query.reach.1 / 2.0).ceil() as i32);
@@ -79,9 +79,9 @@ impl Pyramid {
                 }
             }
         }
-        squares.retain(|s| s.bound > least);
+        squares.retain(|s| s.bound > min);
         squares.sort_by(|a, b| b.bound.total_cmp(&a.bound).then((a.turn, a.y, a.x).cmp(&(b.turn, b.y, b.x))));
-        let mut best = (least, None);
+        let mut best = (min, None);
         for square in squares {
             search.descend(PYRAMID_LEVELS, square, &mut best);
         }
@@ -119,8 +119,8 @@ impl Search<'_> {
         let side = (1 << level) - 1;
         let off = |low: i32, reach: i32, sigma: f64| {
             let (low, high) = (low - reach, low - reach + side);
-            let least = if low > 0 { low } else { (-high).max(0) };
-            0.5 * (2.0 * f64::from(least) / sigma).powi(2)
+            let min = if low > 0 { low } else { (-high).max(0) };
+            0.5 * (2.0 * f64::from(min) / sigma).powi(2)
         };
         let prior = turned.penalty
             + off(x, self.reach.0, self.query.sigma.0)

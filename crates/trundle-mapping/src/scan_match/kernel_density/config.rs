@@ -8,9 +8,9 @@ use trundle_core::{Invalid, require_in};
 #[serde(default, deny_unknown_fields)]
 pub struct ScanMatchConfig {
     /// Largest error of the guess along x and along y, m, 0 to 1. A larger window corrects larger errors, takes longer, and is less safe
-    /// among similar walls. Default 0.15.
+    /// among similar walls. Default 0.15 (ours).
     pub window: f64,
-    /// Largest error of the guess's heading, deg, 0 to 45. Default 6.
+    /// Largest error of the guess's heading, deg, 0 to 45. Default 6 (ours).
     pub window_deg: f64,
     /// Step of the coarse search in position, m, 0.005 to 0.5. A smaller step takes longer. Default 0.05: the map's resolution.
     pub step: f64,
@@ -21,15 +21,15 @@ pub struct ScanMatchConfig {
     /// Sigma of the kernels of the refinement, m, 0.01 to 1. Default 0.06: a little more than a cell, so that a row of
     /// cells makes a smooth wall.
     pub kernel_sigma: f64,
-    /// Smallest distance of two hits that both count, m, 0.001 to 1. Default 0.05.
+    /// Smallest distance of two hits that both count, m, 0.001 to 1. Default 0.05 (ours).
     pub spacing: f64,
-    /// Smallest number of hits on known ground, 3 to 10000. With fewer the scan is not matched. Default 30.
+    /// Smallest number of hits on known ground, 3 to 10000. With fewer the scan is not matched. Default 30 (ours).
     pub min_points: usize,
     /// Smallest fraction of the hits on known ground that the map explains, 0 to 1. Below it the match is refused. Default 0.6; a perfect
     /// fit has 0.9.
     pub min_score: f64,
     /// Fraction of the hits' information below which a direction is degenerate, 0 to 1. A degenerate direction keeps the guess. Default
-    /// 0.05.
+    /// 0.05 (ours).
     pub degenerate_below: f64,
     /// Factor on the sigmas of a match, relative to independent hits with the kernel's sigma, 1 to 100. A larger factor gives matches less
     /// weight in localization. Default 3: errors of one wall's hits are correlated.

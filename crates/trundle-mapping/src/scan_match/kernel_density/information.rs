@@ -17,7 +17,7 @@ pub(crate) struct Information {
     /// Inverse of `base_from_centroid`.
     centroid_from_base: Matrix3<f64>,
     eigen: SymmetricEigen<f64, U3>,
-    least: f64,
+    min: f64,
 }
 
 impl Information {
@@ -26,23 +26,23 @@ impl Information {
         let centroid_from_base = Matrix3::new(1.0, 0.0, -centroid.y, 0.0, 1.0, centroid.x, 0.0, 0.0, lever);
         let base_from_centroid = spread.pose_from_centroid(centroid);
         let information = base_from_centroid.transpose() * equations.information * base_from_centroid;
-        let least = config.degenerate_below * equations.explained / config.kernel_sigma.powi(2);
+        let min = config.degenerate_below * equations.explained / config.kernel_sigma.powi(2);
         Self {
             base_from_centroid,
             centroid_from_base,
             eigen: information.symmetric_eigen(),
-            least: least.max(1e-9),
+            min: min.max(1e-9),
         }
     }
 
     /// Whether any direction is degenerate.
     pub(crate) fn is_degenerate(&self) -> bool {
-        self.eigen.eigenvalues.min() < self.least
+        self.eigen.eigenvalues.min() < self.min
     }
 
     /// The least-squares step without its degenerate part.
     pub(crate) fn solve(&self, rhs: &Vector3<f64>) -> Vector3<f64> {
-        self.by_direction(|value| if value < self.least { 0.0 } else { 1.0 / value }) * rhs
+        self.by_direction(|value| if value < self.min { 0.0 } else { 1.0 / value }) * rhs
     }
 
     /// A displacement (right perturbation) without its degenerate part.
@@ -50,7 +50,7 @@ impl Information {
         let vectors = &self.eigen.eigenvectors;
         let mut along = vectors.transpose() * self.centroid_from_base * displacement;
         for (part, value) in along.iter_mut().zip(self.eigen.eigenvalues.iter()) {
-            if *value < self.least {
+            if *value < self.min {
                 *part = 0.0;
             }
         }
@@ -60,7 +60,7 @@ impl Information {
     /// The covariance, right perturbation.
     pub(crate) fn covariance(&self, config: &ScanMatchConfig) -> Matrix3<f64> {
         let variance = |value: f64| {
-            if value < self.least { config.unknown_sigma.powi(2) } else { config.inflation.powi(2) / value }
+            if value < self.min { config.unknown_sigma.powi(2) } else { config.inflation.powi(2) / value }
         };
         let covariance = self.by_direction(variance);
         (covariance + covariance.transpose()) * 0.5

@@ -98,13 +98,13 @@ fn rhs(config: &ScanMatchConfig, sites: &SurfacePoints, hit: Vector2) -> Option<
     let curvature = Matrix2::identity() - spread / variance;
     Some(PointResidual {
         shift,
-        stiffness: steadied(curvature),
+        stiffness: regularized(curvature),
         explained: density / (density + OUTLIER_DENSITY),
     })
 }
 
 /// The curvature without the part caused by the unevenness of a straight wall's cells, and without negative values.
-fn steadied(curvature: Matrix2<f64>) -> Matrix2<f64> {
+fn regularized(curvature: Matrix2<f64>) -> Matrix2<f64> {
     let mut eigen = curvature.symmetric_eigen();
     eigen
         .eigenvalues

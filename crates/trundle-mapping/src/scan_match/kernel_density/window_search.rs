@@ -58,7 +58,7 @@ impl Lattice {
                     let shift = Vector2::new(f64::from(i), f64::from(j)) * self.step;
                     let pose = Pose2::new(middle.x + shift.x, middle.y + shift.y, theta);
                     let fit: f32 = turned.iter().map(|&p| field.at(p + pose.position())).sum();
-                    let score = f64::from(fit) / points.len() as f64 - disloyalty(config, pose, guess);
+                    let score = f64::from(fit) / points.len() as f64 - prior_penalty(config, pose, guess);
                     if score > best.0 {
                         best = (score, pose);
                     }
@@ -74,7 +74,7 @@ fn outward(reach: i32) -> impl Iterator<Item = i32> {
     std::iter::once(0).chain((1..=reach).flat_map(|i| [i, -i]))
 }
 
-fn disloyalty(config: &ScanMatchConfig, pose: Pose2, guess: Pose2) -> f64 {
+fn prior_penalty(config: &ScanMatchConfig, pose: Pose2, guess: Pose2) -> f64 {
     let away = (guess.inverse() * pose).log();
     let part = |off: f64, window: f64| (off / window.max(1e-6)).powi(2);
     MAX_PRIOR_PENALTY * (part(away.xy().norm(), config.window) + part(away.z, config.window_deg.to_radians()))

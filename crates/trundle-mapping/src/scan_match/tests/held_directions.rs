@@ -36,11 +36,11 @@ proptest! {
 
     /// The held directions and the degenerate ones are together all three.
     #[test]
-    fn the_held_part_is_a_projection(pose in any_pose(), information in any_information(), least in 0.0..0.9_f64) {
+    fn the_held_part_is_a_projection(pose in any_pose(), information in any_information(), min in 0.0..0.9_f64) {
         let models = room::models();
         let shape = room::points(&models, pose);
         let weight = information.trace();
-        let held = HeldDirections::new(&shape, in_cells(&models.config, pose), &equations(information, weight), least);
+        let held = HeldDirections::new(&shape, in_cells(&models.config, pose), &equations(information, weight), min);
         prop_assert!(is_projection(&held.held), "{}", held.held);
         prop_assert!((held.held.trace() - (3 - held.degenerate) as f64).abs() < 1e-9);
     }
@@ -52,9 +52,9 @@ proptest! {
     ) {
         let models = room::models();
         let shape = room::points(&models, pose);
-        let count = |least: f64| {
+        let count = |min: f64| {
             let equations = equations(information, information.trace());
-            HeldDirections::new(&shape, in_cells(&models.config, pose), &equations, least).degenerate
+            HeldDirections::new(&shape, in_cells(&models.config, pose), &equations, min).degenerate
         };
         prop_assert!(count(low) <= count(low + more));
     }

@@ -19,15 +19,15 @@ const BOUND_SHARE: f64 = 0.97;
 /// Parametric speed below which a curve is near a cusp, ratio: a small change of the curve has no effect there. Source: ours.
 const MIN_PARAMETRIC_SPEED: f64 = 0.3;
 
-/// The points at which the curve's curvature exceeds `most`, 1/m; `None` if the curve is near a cusp at one of them.
-pub(super) fn exceeding(curve: &Curve, most: f64) -> Option<Vec<CurvePoint>> {
+/// The points at which the curve's curvature exceeds `max`, 1/m; `None` if the curve is near a cusp at one of them.
+pub(super) fn exceeding(curve: &Curve, max: f64) -> Option<Vec<CurvePoint>> {
     let mut points = Vec::new();
     for (piece, bezier) in curve.pieces().iter().enumerate() {
         for k in 0..=CHECKS_PER_PIECE {
             let u = k as f64 / CHECKS_PER_PIECE as f64;
             let jet = bezier.jet(u);
             let speed = jet.derivative.norm();
-            if jet.derivative.perp(&jet.second).abs() > most * speed * speed * speed {
+            if jet.derivative.perp(&jet.second).abs() > max * speed * speed * speed {
                 if speed < MIN_PARAMETRIC_SPEED {
                     return None;
                 }
@@ -40,13 +40,13 @@ pub(super) fn exceeding(curve: &Curve, most: f64) -> Option<Vec<CurvePoint>> {
 
 impl Rows<'_> {
     /// The bound at each point, linearised about `curve`.
-    pub(super) fn curvature_bounds(&mut self, curve: &Curve, points: &[CurvePoint], most: f64) {
+    pub(super) fn curvature_bounds(&mut self, curve: &Curve, points: &[CurvePoint], max: f64) {
         for (piece, u) in points {
             let jet = curve.pieces()[*piece].jet(*u);
             let (d, dd, speed) = (jet.derivative, jet.second, jet.derivative.norm().max(1e-3));
             let side = if d.perp(&dd) < 0.0 { -1.0 } else { 1.0 };
-            let value = side * d.perp(&dd) - BOUND_SHARE * most * speed.powi(3);
-            let by_d = Vector2::new(dd.y, -dd.x) * side - d * (3.0 * BOUND_SHARE * most * speed);
+            let value = side * d.perp(&dd) - BOUND_SHARE * max * speed.powi(3);
+            let by_d = Vector2::new(dd.y, -dd.x) * side - d * (3.0 * BOUND_SHARE * max * speed);
             let by_dd = Vector2::new(-d.y, d.x) * side;
             let right = by_d.dot(&d) + by_dd.dot(&dd) - value;
             // In units of p'', like the rows of p and p'.

@@ -43,7 +43,7 @@ impl<'a> Rows<'a> {
         self.tangent(last, end);
     }
 
-    /// x' sin(theta) - y' cos(theta) = 0, and for a motion under way also speed and curvature.
+    /// x' sin(theta) - y' cos(theta) = 0, and for a start in motion also speed and curvature.
     fn tangent(&mut self, knot: usize, tangent: Tangent) {
         let velocity = self.layout.knot(knot, 1);
         match tangent {
@@ -57,8 +57,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// x' cos(theta) + y' sin(theta) >= least at both ends; along the segment if the heading is free.
-    pub(super) fn forward(&mut self, start: Tangent, end: Tangent, least: f64) {
+    /// x' cos(theta) + y' sin(theta) >= min at both ends; along the segment if the heading is free.
+    pub(super) fn forward(&mut self, start: Tangent, end: Tangent, min: f64) {
         let last = self.layout.pieces;
         let ends = [(0, start, &self.segments[0]), (last, end, &self.segments[last - 1])];
         for (knot, tangent, segment) in ends {
@@ -67,7 +67,7 @@ impl<'a> Rows<'a> {
                 Tangent::Heading(theta) => Vector2::new(theta.cos(), theta.sin()),
                 Tangent::Free => (segment.to - segment.from) / segment.length(),
             };
-            self.row(self.layout.knot(knot, 1), -along, -least);
+            self.row(self.layout.knot(knot, 1), -along, -min);
         }
     }
 

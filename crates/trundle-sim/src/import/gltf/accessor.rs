@@ -9,7 +9,7 @@ use gltf::json::{Index, buffer};
 use trundle_core::Invalid;
 
 /// Largest number of elements of an accessor. A file with more elements counts as broken. Source: ours.
-const MOST_ELEMENTS: u64 = 100_000_000;
+const MAX_ELEMENTS: u64 = 100_000_000;
 
 /// Elements in a buffer: `parts` components each, `stride` bytes apart.
 struct Elements<'a> {
@@ -120,7 +120,7 @@ impl<'a> Elements<'a> {
         debug_assert_eq!(self.parts, N);
         std::array::from_fn(|part| {
             let word = self.component(i, part);
-            let (value, most) = match self.component {
+            let (value, max) = match self.component {
                 ComponentType::I8 => (f32::from(word[0] as i8), 127.0),
                 ComponentType::U8 => (f32::from(word[0]), 255.0),
                 ComponentType::I16 => (f32::from(i16::from_le_bytes([word[0], word[1]])), 32767.0),
@@ -128,7 +128,7 @@ impl<'a> Elements<'a> {
                 ComponentType::U32 => (u32::from_le_bytes(word) as f32, u32::MAX as f32),
                 ComponentType::F32 => return f32::from_le_bytes(word),
             };
-            if normalized { (value / most).max(-1.0) } else { value }
+            if normalized { (value / max).max(-1.0) } else { value }
         })
     }
 }
@@ -142,8 +142,8 @@ fn component_of(accessor: &Accessor, index: Index<Accessor>) -> Result<Component
 
 fn count_of(accessor: &Accessor, index: Index<Accessor>) -> Result<usize, ImportFault> {
     let count = accessor.count.0;
-    if count > MOST_ELEMENTS {
-        return Err(wrong(index, format!("{count} elements long"), format!("at most {MOST_ELEMENTS}")));
+    if count > MAX_ELEMENTS {
+        return Err(wrong(index, format!("{count} elements long"), format!("at most {MAX_ELEMENTS}")));
     }
     Ok(count as usize)
 }

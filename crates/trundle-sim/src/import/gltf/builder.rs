@@ -15,7 +15,7 @@ use trundle_core::Invalid;
 const MAX_COORDINATE_M: f64 = 1e5;
 
 /// Maximum number of triangles of a file with all its instances. Source: ours.
-const MOST_TRIANGLES: usize = 50_000_000;
+const MAX_TRIANGLES: usize = 50_000_000;
 
 /// Gathers the surfaces of a file into one mesh.
 pub(super) struct Builder<'a> {
@@ -56,13 +56,13 @@ impl<'a> Builder<'a> {
                 self.hidden += 1;
                 surface.colors = None;
             }
-            if self.triangles.len() + surface.triangles.len() > MOST_TRIANGLES {
-                let found = format!("more than {MOST_TRIANGLES}");
+            if self.triangles.len() + surface.triangles.len() > MAX_TRIANGLES {
+                let found = format!("more than {MAX_TRIANGLES}");
                 return Err(Invalid::new(
                     "number of triangles",
                     found,
                     "",
-                    format!("at most {MOST_TRIANGLES}"),
+                    format!("at most {MAX_TRIANGLES}"),
                 )
                 .into());
             }

@@ -10,10 +10,10 @@ use std::io::Cursor;
 use trundle_core::ColorImage;
 
 /// Longest side of a texture, px. Source: ours.
-const MOST_PIXELS: u32 = 16_384;
+const MAX_PIXELS: u32 = 16_384;
 
-/// Most memory for decoding a texture, bytes. Source: ours.
-const MOST_MEMORY: u64 = 1 << 30;
+/// Maximum memory for decoding a texture, bytes. Source: ours.
+const MAX_MEMORY: u64 = 1 << 30;
 
 /// Decodes an image, PNG or JPEG; alpha is left out.
 pub(super) fn decode(buffers: &Buffers<'_>, index: Index<file::Image>) -> Result<ColorImage, ImportFault> {
@@ -32,9 +32,9 @@ pub(super) fn decode(buffers: &Buffers<'_>, index: Index<file::Image>) -> Result
 fn decode_bytes(bytes: &[u8]) -> image::ImageResult<image::RgbImage> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
     let mut limits = image::Limits::default();
-    limits.max_image_width = Some(MOST_PIXELS);
-    limits.max_image_height = Some(MOST_PIXELS);
-    limits.max_alloc = Some(MOST_MEMORY);
+    limits.max_image_width = Some(MAX_PIXELS);
+    limits.max_image_height = Some(MAX_PIXELS);
+    limits.max_alloc = Some(MAX_MEMORY);
     reader.limits(limits);
     Ok(reader.decode()?.into_rgb8())
 }
@@ -46,7 +46,7 @@ fn problem(bytes: &[u8], error: &image::ImageError) -> String {
     match (found, error) {
         (Some(name), _) => format!("is {name}, expected PNG or JPEG"),
         (None, image::ImageError::Limits(_)) => {
-            format!("is too large, expected at most {MOST_PIXELS} px a side")
+            format!("is too large, expected at most {MAX_PIXELS} px a side")
         }
         _ => "cannot be decoded, expected a whole PNG or JPEG".to_owned(),
     }

@@ -23,7 +23,7 @@ use trundle_core::{Invalid, Pose2};
 /// and closed doors. `seed` varies textures, colours, furniture and wall decorations.
 ///
 /// # Errors
-/// Never for any seed; the type is that of every scene.
+/// None for any seed; the result type is that of all scenes.
 pub fn office(seed: u64) -> Result<Scene, Invalid> {
     let mut build = Builder::new(seed);
     corridor::place(&mut build);

@@ -109,15 +109,18 @@ fn shell(build: &mut Builder, corner: Pose2, door_in: DoorIn, floor: Paint, colo
     let south = long_wall(corner, [y0, y0 + HALF_WALL], [UNSEEN, wall]);
     let north = long_wall(corner, [y1 - HALF_WALL, y1], [wall, UNSEEN]);
     let door = [x0 + DOOR_CENTRE_X_M];
-    let (with_door, without, way) = match door_in {
+    let (with_door, without, direction) = match door_in {
         DoorIn::South => (south, north, 1.0),
         DoorIn::North => (north, south, -1.0),
     };
     build.partition(&with_door, &door);
     build.partition(&without, &[]);
     let inner = if door_in == DoorIn::South { y0 + HALF_WALL } else { y1 - HALF_WALL };
-    let hinge =
-        Pose2::new(x0 + DOOR_CENTRE_X_M + DOOR_WIDTH / 2.0 + 0.03125, inner + way * 0.03125, way * FRAC_PI_2);
+    let hinge = Pose2::new(
+        x0 + DOOR_CENTRE_X_M + DOOR_WIDTH / 2.0 + 0.03125,
+        inner + direction * 0.03125,
+        direction * FRAC_PI_2,
+    );
     build.door_leaf(hinge, [158, 120, 80]);
 }
 

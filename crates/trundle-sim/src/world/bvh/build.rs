@@ -17,12 +17,12 @@ pub(super) struct Tree {
     pub(super) leaves: Vec<(u32, u32)>,
 }
 
-/// The hierarchy over `boxes`, with at most `most` items per leaf.
-pub(super) fn build(boxes: &[Aabb], most: usize) -> Tree {
+/// The hierarchy over `boxes`, with at most `max` items per leaf.
+pub(super) fn build(boxes: &[Aabb], max: usize) -> Tree {
     let centers = boxes.iter().map(Aabb::center).collect();
     let items = (0..boxes.len() as u32).collect();
     let tree = Tree { nodes: Vec::new(), items, leaves: Vec::new() };
-    let mut builder = Builder { boxes, centers, most, tree };
+    let mut builder = Builder { boxes, centers, max, tree };
     if !boxes.is_empty() {
         builder.add_node(0, boxes.len(), 0);
     }
@@ -32,7 +32,7 @@ pub(super) fn build(boxes: &[Aabb], most: usize) -> Tree {
 struct Builder<'a> {
     boxes: &'a [Aabb],
     centers: Vec<Vector3>,
-    most: usize,
+    max: usize,
     tree: Tree,
 }
 
@@ -56,7 +56,7 @@ impl Builder<'_> {
         let mut parts = vec![self.part(first, end)];
         while parts.len() < WIDTH {
             // The largest is opened first.
-            let open = parts.iter().enumerate().filter(|(_, part)| part.len() > self.most);
+            let open = parts.iter().enumerate().filter(|(_, part)| part.len() > self.max);
             let largest = open.max_by(|a, b| area(&a.1.bounds).total_cmp(&area(&b.1.bounds)));
             let Some((largest, _)) = largest else { break };
             let (left, right) = self.split(parts[largest], depth);
@@ -66,7 +66,7 @@ impl Builder<'_> {
         let index = self.tree.nodes.len();
         self.tree.nodes.push(node_over(&parts));
         for (i, part) in parts.iter().enumerate() {
-            self.tree.nodes[index].links[i] = if part.len() <= self.most {
+            self.tree.nodes[index].links[i] = if part.len() <= self.max {
                 self.tree.leaves.push((part.first as u32, part.end as u32));
                 LEAF | (self.tree.leaves.len() as u32 - 1)
             } else {

@@ -117,7 +117,7 @@ fn a_robot_inside_a_prop_is_refused_by_the_simulator() {
 fn errors_of_scene_files_are_named() {
     let with = |item: &str| refusal(&format!(r#"{{"base": {{"scene": "room"}}, {item}}}"#));
     let prop = |rest: &str| with(&format!(r#""props": [{{"kind": "box", "x": 0, "y": 0}}, {{{rest}}}]"#));
-    for (said, expected) in [
+    for (reported, expected) in [
         (refusal(r#"{"base": {}}"#), "base is 0 of scene, gltf, map, expected exactly one"),
         (refusal(r#"{"base": {"scene": "room", "map": "floor.yaml"}}"#), "base is 2"),
         (refusal(r#"{"base": {"scene": "moon"}}"#), "base.scene is moon"),
@@ -133,7 +133,7 @@ fn errors_of_scene_files_are_named() {
         (with(r#""lights": {"ambient": -1}"#), "lights.ambient is -1"),
         (with(r#""robot": {"goal": {"x": 0, "y": 1e300}}"#), "robot.goal.y"),
     ] {
-        assert!(said.contains(expected), "'{said}' does not say '{expected}'");
+        assert!(reported.contains(expected), "'{reported}' does not say '{expected}'");
     }
 }
 
@@ -144,8 +144,8 @@ fn numbers_that_are_none_are_refused_by_item() {
     let refused = |spoil: fn(&mut SceneFile), expected: &str| {
         let mut spoilt = file.clone();
         spoil(&mut spoilt);
-        let said = spoilt.build(&Shelf, 1).unwrap_err().to_string();
-        assert!(said.contains(expected), "'{said}' does not say '{expected}'");
+        let reported = spoilt.build(&Shelf, 1).unwrap_err().to_string();
+        assert!(reported.contains(expected), "'{reported}' does not say '{expected}'");
     };
     refused(|file| file.props[0].heading_deg = f64::NAN, "props[0].heading_deg is NaN");
     refused(|file| file.props[0].size = Some([f64::NAN; 3]), "props[0].size is NaN");

@@ -46,7 +46,7 @@ fn look(renderer: &Renderer, scene: &Scene, pose: Pose2) -> View {
 
 /// Look-alikes for place recognition: the images are the same to the last byte.
 #[test]
-fn look_alike_rooms_cannot_be_told_apart() {
+fn look_alike_rooms_have_equal_views() {
     let renderer =
         Renderer::new(PinholeCamera::from_field_of_view((256, 212), (1.232, 1.047)).unwrap()).unwrap();
     let scene = Scene::by_name("office", 2).unwrap();

@@ -45,8 +45,8 @@ pub fn p0_tables(page: &[u8]) -> Result<[Vec<u16>; FREQUENCY_COUNT], Invalid> {
     let tables = page.get(P0_HEADER_BYTES..).unwrap_or_default();
     let expected = FREQUENCY_COUNT * P0_TABLE_BYTES;
     if tables.len() < expected {
-        let least = format!("at least {}", P0_HEADER_BYTES + expected);
-        return Err(Invalid::new("P0 tables of the Kinect V2", page.len(), "bytes", least));
+        let min = format!("at least {}", P0_HEADER_BYTES + expected);
+        return Err(Invalid::new("P0 tables of the Kinect V2", page.len(), "bytes", min));
     }
     Ok(std::array::from_fn(|frequency| {
         let table = &tables[frequency * P0_TABLE_BYTES + 2..][..2 * PIXEL_COUNT];

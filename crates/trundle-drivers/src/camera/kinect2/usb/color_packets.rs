@@ -17,7 +17,7 @@ pub const HEADER_BYTES: usize = 8;
 pub const FOOTER_BYTES: usize = 56;
 /// Longest packet \[bytes\]: 2 MB. Source: \[Freenect2\].
 pub const MAX_PACKET_BYTES: usize = 2 << 20;
-/// Most bytes between the end of the JPEG file and the filler. Source: \[Freenect2\].
+/// Maximum number of bytes between the end of the JPEG file and the filler. Source: \[Freenect2\].
 const MAX_PADDING_BYTES: usize = 3;
 /// First bytes of a JPEG file. Source: ITU-T T.81, B.1.1.3.
 const JPEG_START: [u8; 2] = [0xff, 0xd8];

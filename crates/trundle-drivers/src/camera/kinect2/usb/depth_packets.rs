@@ -5,7 +5,7 @@
 
 use crate::camera::kinect2::packets::{FrameAssembler, PackedFrame, SubPacketParser};
 
-/// Least size of the isochronous packets \[bytes\]. Source: \[Freenect2\].
+/// Minimum size of the isochronous packets \[bytes\]. Source: \[Freenect2\].
 pub const MIN_PACKET_BYTES: usize = 0x8400;
 
 /// Assembles frames from isochronous packets. It stores at most one frame.

@@ -17,7 +17,7 @@ use trundle_core::{Invalid, PinholeCamera, Pose3};
 const READY_TIMEOUT_S: u64 = 5;
 /// Period of queries of the ready state \[ms\]. Source: ours.
 const READY_POLL_MS: u64 = 100;
-/// Most transfers that one reply may take. Source: ours; two, and some completions of earlier requests.
+/// Maximum number of transfers of one reply. Source: ours; two, and some completions of earlier requests.
 const MAX_REPLY_TRANSFERS: usize = 16;
 /// Control requests. Source: USB 3.1 specification, 9.4.9 and 9.4.11.
 const TO_DEVICE: u8 = 0x00;

@@ -2,7 +2,7 @@
 
 /// Vendor number of Microsoft. Source: the USB vendor list.
 pub const VENDOR_ID: u16 = 0x045e;
-/// Product numbers: the Kinect V2 before and after its release. Source: \[Freenect2\].
+/// Product numbers: the Kinect V2 as sold, and its preview version. Source: \[Freenect2\].
 pub const PRODUCT_IDS: [u16; 2] = [0x02d8, 0x02c4];
 /// Name of the camera in messages.
 pub const KINECT2_NAME: &str = "Kinect V2";

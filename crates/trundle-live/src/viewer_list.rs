@@ -12,13 +12,13 @@ pub type ViewerId = u64;
 
 /// Viewers, and at most one viewer in control.
 #[derive(Debug, Default)]
-pub struct Roster {
+pub struct ViewerList {
     names: BTreeMap<ViewerId, String>,
     last: ViewerId,
     wheel: Option<ViewerId>,
 }
 
-impl Roster {
+impl ViewerList {
     /// Adds a viewer; returns its number. `None` if the number of viewers is at its limit.
     pub fn enter(&mut self) -> Option<ViewerId> {
         if self.names.len() >= MAX_VIEWERS {
@@ -92,21 +92,21 @@ mod tests {
 
     #[test]
     fn one_holds_the_wheel_until_it_leaves_or_another_takes_it() {
-        let mut roster = Roster::default();
-        let (anna, bert) = (roster.enter().unwrap(), roster.enter().unwrap());
-        roster.rename(anna, " Anna\u{7} ");
-        assert_eq!(roster.require(anna), Ok(()));
-        assert_eq!(roster.require(bert), Err("Anna".to_owned()));
-        roster.take(bert);
-        assert_eq!(roster.holder(), Some((bert, "viewer 2".to_owned())));
-        assert!(!roster.leave(anna) && roster.leave(bert));
-        assert_eq!((roster.holder(), roster.count()), (None, 0));
+        let mut viewer_list = ViewerList::default();
+        let (anna, bert) = (viewer_list.enter().unwrap(), viewer_list.enter().unwrap());
+        viewer_list.rename(anna, " Anna\u{7} ");
+        assert_eq!(viewer_list.require(anna), Ok(()));
+        assert_eq!(viewer_list.require(bert), Err("Anna".to_owned()));
+        viewer_list.take(bert);
+        assert_eq!(viewer_list.holder(), Some((bert, "viewer 2".to_owned())));
+        assert!(!viewer_list.leave(anna) && viewer_list.leave(bert));
+        assert_eq!((viewer_list.holder(), viewer_list.count()), (None, 0));
     }
 
     #[test]
     fn viewers_are_limited() {
-        let mut roster = Roster::default();
-        let entered = std::iter::from_fn(|| roster.enter()).take(1000).count();
+        let mut viewer_list = ViewerList::default();
+        let entered = std::iter::from_fn(|| viewer_list.enter()).take(1000).count();
         assert_eq!(entered, MAX_VIEWERS);
     }
 }

@@ -17,7 +17,7 @@ impl Robot {
     ///
     /// # Errors
     /// Names the number of the command that is not finite or outside its range. The command is then ignored.
-    pub fn obey(&mut self, command: OperatorCommand) -> Result<StepReport, Invalid> {
+    pub fn execute(&mut self, command: OperatorCommand) -> Result<StepReport, Invalid> {
         let now = self.localizer.estimate().stamp;
         let mut report = StepReport::default();
         match command.validated()? {

@@ -6,7 +6,7 @@ use trundle_runtime::{DriveState, MotionHold};
 
 /// Part of a view of the run that home and master need.
 #[derive(Debug, Clone)]
-pub struct RobotGlance {
+pub struct RobotStatus {
     /// `map_from_base` and twist.
     pub estimate: PoseEstimate,
     /// State of the robot.
@@ -21,7 +21,7 @@ pub struct RobotGlance {
     pub station: Option<Pose2>,
 }
 
-impl RobotGlance {
+impl RobotStatus {
     /// A robot at rest with a known pose and without a mission.
     #[must_use]
     pub fn at_rest(pose: Pose2) -> Self {
@@ -37,7 +37,7 @@ impl RobotGlance {
     }
 }
 
-impl From<&RunView> for RobotGlance {
+impl From<&RunView> for RobotStatus {
     fn from(view: &RunView) -> Self {
         Self {
             estimate: view.estimate,

@@ -27,7 +27,7 @@ impl<'a> Run<'a> {
         run
     }
 
-    /// On to the next pose, with wheels; in the dark or not.
+    /// Moves to the next pose, with wheel odometry; without an image if `is_dark`.
     fn step(&mut self, to: Pose3, is_dark: bool) -> TrackReport {
         let prior = reported(self.at.inverse() * to, &SlamConfig::default(), &mut self.dice);
         let (features, depth) = if is_dark { darkness() } else { self.room.seen_from(to, &mut self.dice) };
@@ -37,7 +37,7 @@ impl<'a> Run<'a> {
         report
     }
 
-    /// The squared error of a report, normalised.
+    /// The normalised squared error of a report.
     fn nees(&self, report: &TrackReport) -> f64 {
         let error = (self.at.inverse() * report.visual_from_camera).log();
         error.dot(&(report.covariance.try_inverse().unwrap() * error))
@@ -57,7 +57,7 @@ fn mean_over_runs(of_run: impl Fn(u64) -> f64) -> f64 {
     mean
 }
 
-/// A walk through the room that looks about.
+/// A walk through the room with changing view directions.
 fn walk(frame: usize) -> Pose3 {
     let t = frame as f64 / 90.0 * std::f64::consts::TAU;
     Pose3::exp(Vector6::new(0.5 * t.sin(), 0.05 * (2.0 * t).sin(), 0.4 - 0.4 * t.cos(), 0.0, 0.0, 0.0))
@@ -95,13 +95,13 @@ fn the_covariance_is_consistent_in_the_dark() {
     assert!(BAND.contains(&mean), "normalised squared error {mean}, expected within {BAND:?}");
 }
 
-/// All the way round on the spot, with a part of it in the dark: the last views show the first ones again.
+/// A full turn on the spot, partly in the dark: the last views show the places of the first ones.
 #[test]
 fn the_covariance_is_consistent_after_a_loop() {
     let room = Room::new();
     let mean = mean_over_runs(|seed| {
         let mut run = Run::new(&room, seed, turned(0));
-        // Once round, and a second more, in which the whole map is refined.
+        // One turn and one second, in which the whole map is refined.
         let steps = (1..=85).map(|i| run.step(turned(2 * i.min(54)), (12..22).contains(&i)));
         let reports: Vec<TrackReport> = steps.collect();
         let last = reports.last().unwrap();
