@@ -94,10 +94,10 @@ impl StepDisplay {
 
 impl StepProgress for StepDisplay {
     fn begin(&self, steps: Option<usize>) {
+        self.bar.set_style(style(if steps.is_some() { "{wide_msg}" } else { SPINNER }));
         self.bar.reset();
         self.bar.unset_length();
         steps.iter().for_each(|steps| self.bar.set_length(*steps as u64));
-        self.bar.set_style(style(if steps.is_some() { "{wide_msg}" } else { SPINNER }));
     }
 
     fn advance(&self) {

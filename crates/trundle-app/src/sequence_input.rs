@@ -297,7 +297,7 @@ fn assumed_depth_scale(sequence: &TumSequence, camera: &str, usual: f64) -> f64 
     sequence.frames().take(MAX_TRIED_IMAGES).flatten().for_each(|image| statistics.count(image.depth()));
     let by_images = statistics.fitting_scale(usual);
     let (scale, reason) = match by_images {
-        Some(scale) => (scale, format!(" by the images, which are hardly usable with {usual}")),
+        Some(scale) => (scale, format!(" by the images: with {usual}, much of their depth is beyond 8 m")),
         None => (usual, String::new()),
     };
     tracing::warn!(
