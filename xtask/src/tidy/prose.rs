@@ -24,8 +24,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
 
 /// Every source file begins with `//!`.
 fn check_head(file: &File) -> Vec<Finding> {
-    let is_source = file.path.ends_with(".rs") && file.path.contains("/src/");
-    if is_source && !file.text.starts_with("//!") {
+    if file.path.ends_with(".rs") && !file.text.starts_with("//!") {
         let message = "a file begins by saying what it holds (`//!`)";
         return vec![Finding::ruled(Rule::FileDoc, &file.path, 1, message)];
     }
@@ -123,6 +122,7 @@ mod tests {
     #[test]
     fn files_say_what_they_hold_and_nothing_of_the_work() {
         assert!(found("x/src/a.rs", "use a;\n")[0].contains("begins by saying"));
+        assert!(found("x/tests/it/a.rs", "use a;\n")[0].contains("begins by saying"));
         let text = format!("It was found by {}.\n", PROCESS_WORDS[0]);
         assert!(found("a.md", &text)[0].contains("about how the project is worked on"));
     }

@@ -1,3 +1,5 @@
+//! Wrong input of every command: message, exit code, and no output.
+
 use crate::{
     plan::write_room,
     program::{refusal, summary, text, trundle},

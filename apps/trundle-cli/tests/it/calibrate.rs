@@ -1,3 +1,5 @@
+//! `trundle calibrate` on rendered boards of tags.
+
 use crate::program::{text, trundle};
 use std::path::Path;
 

@@ -1,3 +1,5 @@
+//! `trundle demo`: the goal, the replay, and the sizes of recordings.
+
 use crate::program::{refusal, summary, text, trundle};
 use std::fs;
 

@@ -1,3 +1,5 @@
+//! `trundle dock` on scans and maps.
+
 use crate::plan::write_room;
 use crate::program::{refusal, summary, text, trundle};
 use std::fs;

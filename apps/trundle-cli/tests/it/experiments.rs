@@ -1,3 +1,5 @@
+//! `trundle experiment`: short runs of BARN, MRPB and plain rooms, and missing data.
+
 use crate::program::{refusal, shared, summary, text, trundle};
 use std::fs;
 

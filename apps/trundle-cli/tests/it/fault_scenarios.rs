@@ -1,3 +1,5 @@
+//! Fault scenarios of the program: resume after a kill, damaged checkpoints, a full disk.
+
 use crate::program::{refusal, summary, text, trundle};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};

@@ -1,3 +1,5 @@
+//! `trundle map` on laser logs, and saved maps.
+
 use crate::program::{refusal, shared, summary, text, trundle};
 use std::fs;
 use std::path::Path;

@@ -1,3 +1,5 @@
+//! Missions of `trundle demo`: exploration, and a black camera.
+
 use crate::program::{summary, text, trundle};
 use std::fs;
 

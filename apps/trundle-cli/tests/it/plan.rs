@@ -1,3 +1,5 @@
+//! `trundle plan` on map files: goals, zones, and stages.
+
 use crate::program::{summary, text, trundle};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,3 +1,5 @@
+//! The program under test, and its output.
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 

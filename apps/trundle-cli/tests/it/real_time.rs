@@ -1,3 +1,5 @@
+//! Runs in real time: replay and interruption.
+
 use crate::program::{summary, text, trundle};
 use std::fs;
 use std::path::Path;

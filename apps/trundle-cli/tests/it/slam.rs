@@ -1,3 +1,5 @@
+//! `trundle slam` on image folders and recordings, and saved maps.
+
 use crate::program::{refusal, shared, summary, text, trundle};
 use std::{fs, path::Path};
 

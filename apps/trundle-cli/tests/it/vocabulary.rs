@@ -1,3 +1,5 @@
+//! `trundle vocabulary`: training, exchange with DBoW2, and wrong files.
+
 use crate::program::{refusal, text, trundle};
 use std::fs;
 use std::path::Path;

@@ -1,3 +1,5 @@
+//! The trajectory follower on a simulated base.
+
 use crate::plant::{DT, Plant};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_control::{FollowPhase, Follower, FollowerConfig};

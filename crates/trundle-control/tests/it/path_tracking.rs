@@ -1,3 +1,5 @@
+//! Laws of the path-tracking controller.
+
 use crate::plant::{DT, Plant};
 use proptest::prelude::*;
 use trundle_control::{PathTracker, PathTrackingConfig, TrackingError};

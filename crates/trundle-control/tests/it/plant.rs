@@ -1,3 +1,5 @@
+//! The simulated base of the control tests.
+
 use std::collections::VecDeque;
 use trundle_core::{DifferentialDrive, Pose2, PoseEstimate, Stamp, Twist2};
 

@@ -1,3 +1,5 @@
+//! The safety monitor on simulated drives.
+
 use crate::plant::{DT, Plant};
 use proptest::prelude::*;
 use trundle_control::{

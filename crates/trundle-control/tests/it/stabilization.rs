@@ -1,3 +1,5 @@
+//! The pose controller near its goal.
+
 use crate::plant::{DT, Plant};
 use proptest::prelude::*;
 use trundle_control::{Stabilizer, StabilizerConfig, StabilizerPhase};

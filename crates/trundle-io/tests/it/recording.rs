@@ -1,3 +1,5 @@
+//! Recordings: round trip, order, cut and damaged files.
+
 use crate::frame;
 use proptest::prelude::*;
 use serde_json::json;

@@ -1,3 +1,5 @@
+//! Laser data of ROS bags: MCAP, SQLite, byte orders, and compression.
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

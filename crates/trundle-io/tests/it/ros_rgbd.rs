@@ -1,3 +1,5 @@
+//! RGB-D images of ROS bags.
+
 use crate::frame;
 use std::io::Cursor;
 use std::path::Path;

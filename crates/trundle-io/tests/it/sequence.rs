@@ -1,3 +1,5 @@
+//! TUM folders: reading, and wrong folders.
+
 use crate::frame;
 use std::fs;
 use std::path::{Path, PathBuf};

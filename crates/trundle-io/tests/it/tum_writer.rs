@@ -1,3 +1,5 @@
+//! TUM folders as the writer leaves them.
+
 use crate::frame;
 use std::fs;
 use tempfile::TempDir;

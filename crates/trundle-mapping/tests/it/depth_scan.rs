@@ -1,3 +1,5 @@
+//! Scans from depth images.
+
 use crate::boxes::{Solid, add_noise, depth_of, mount, mounted, rgbd};
 use proptest::prelude::*;
 use trundle_core::{Beam, DepthImage, Distortion, ObstacleKind, PinholeCamera, Pose2, Pose3, Scan, Vector2};

@@ -1,3 +1,5 @@
+//! The particle filter on simulated drives.
+
 use crate::flat_room::FlatRoom;
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Beam, Cell, Pose2, Scan, Stamp, Vector2, wrap_angle};

@@ -1,3 +1,5 @@
+//! Maps of simulated rooms against the true walls.
+
 use crate::flat_room::FlatRoom;
 use std::f64::consts::TAU;
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Vector2};

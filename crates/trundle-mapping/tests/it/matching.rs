@@ -1,3 +1,5 @@
+//! The scan matcher in a simulated room.
+
 use crate::flat_room::FlatRoom;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_4, TAU};

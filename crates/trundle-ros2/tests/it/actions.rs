@@ -1,3 +1,5 @@
+//! Action servers beside other participants.
+
 use super::{Domain, wait_until};
 use std::sync::{Arc, Mutex};
 use trundle_ros2::clock::RosClock;

@@ -1,3 +1,5 @@
+//! Topics of the sensors.
+
 use super::{Domain, wait_until};
 use std::sync::{Arc, Mutex};
 use trundle_core::{

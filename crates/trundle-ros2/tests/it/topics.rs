@@ -1,3 +1,5 @@
+//! Messages between two participants.
+
 use super::{Domain, wait_until};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;

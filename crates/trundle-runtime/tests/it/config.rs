@@ -1,3 +1,5 @@
+//! The robot file: defaults, wrong keys and values.
+
 use trundle_runtime::RobotConfig;
 use trundle_runtime::settings::{RobotFile, to_commented_toml};
 

@@ -1,3 +1,5 @@
+//! The robot on made events: blind cameras, stuck wheels, blocked goals.
+
 use trundle_core::{
     Beam, DepthImage, DifferentialDrive, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, Scan, SensorEvent,
     Stamp, Touch, Twist2, Vector2, WheelTicks,

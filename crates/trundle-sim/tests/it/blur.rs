@@ -1,3 +1,5 @@
+//! Motion blur.
+
 use super::{almost_blind, hall};
 use trundle_core::{ColorImage, DepthImage, PinholeCamera, Pose2, RgbdImage, RobotBody, SensorEvent, Twist2};
 use trundle_sim::{Exposure, Scene, SimConfig, Simulator};

@@ -1,3 +1,5 @@
+//! Contacts of the robot with solids, triangles and people.
+
 use crate::{block, shared_data};
 use proptest::prelude::*;
 use trundle_core::{Cell, Footprint, Pose2, Vector2};

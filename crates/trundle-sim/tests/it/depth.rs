@@ -1,3 +1,5 @@
+//! The depth camera against closed forms.
+
 use super::{block, hall};
 use trundle_core::{PinholeCamera, Pose2, Pose3, Stamp, Vector2, Vector3};
 use trundle_sim::{

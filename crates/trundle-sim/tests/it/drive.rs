@@ -1,3 +1,5 @@
+//! The drive and its odometry against closed forms.
+
 use super::{almost_blind, block, hall, shared_data};
 use trundle_core::{DifferentialDrive, Footprint, Pose2, RobotBody, SensorEvent, Twist2, WheelTicks};
 use trundle_sim::import::{GltfOptions, gltf};

@@ -1,3 +1,5 @@
+//! Order and determinism of the simulator's events.
+
 use super::{almost_blind, hall};
 use trundle_core::{Pose2, RobotBody, SensorEvent, Stamp, Twist2};
 use trundle_sim::{LaserConfig, Scene, SimConfig, Simulator, World};

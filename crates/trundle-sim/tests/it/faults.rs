@@ -1,3 +1,5 @@
+//! Faults of the simulated sensors.
+
 use super::{block, hall};
 use trundle_core::{PinholeCamera, Pose2, RgbdImage, RobotBody, SensorEvent, Stamp, Twist2};
 use trundle_sim::{

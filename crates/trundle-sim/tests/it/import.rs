@@ -1,3 +1,5 @@
+//! Imported glTF scenes: textures, units, and damaged files.
+
 use proptest::prelude::*;
 use std::io;
 use std::path::Path;

@@ -1,3 +1,5 @@
+//! The laser scanner against closed forms.
+
 use super::{almost_blind, hall};
 use trundle_core::{Beam, Pose2, RobotBody, Scan, SensorEvent, Twist2};
 use trundle_sim::{LaserConfig, Scene, SimConfig, Simulator};

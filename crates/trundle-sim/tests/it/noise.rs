@@ -1,3 +1,5 @@
+//! Noise of images against its models.
+
 use trundle_core::{RgbdImage, Stamp};
 use trundle_sim::{ColorNoise, DepthNoise, Exposure, RgbdSensor, View};
 

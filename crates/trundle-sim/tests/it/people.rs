@@ -1,3 +1,5 @@
+//! Simulated people and the robot.
+
 use super::{almost_blind, hall};
 use trundle_core::{Pose2, RobotBody, Scan, SensorEvent, Twist2, Vector2};
 use trundle_sim::{LaserConfig, Person, Scene, SimConfig, Simulator};

@@ -1,3 +1,5 @@
+//! The built-in scenes: free and reachable goals.
+
 mod files;
 mod office;
 mod reachable_floor;

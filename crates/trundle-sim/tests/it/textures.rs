@@ -1,3 +1,5 @@
+//! Rendered textures: no flicker, enough features.
+
 use trundle_core::{ColorImage, PinholeCamera, Pose2, Pose3};
 use trundle_sim::{
     Lights, Material, Mesh, Renderer, Scene, SceneSnapshot, Triangle, View, World, camera_mount,

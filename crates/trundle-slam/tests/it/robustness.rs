@@ -1,3 +1,5 @@
+//! SLAM on empty, blank and repeated images.
+
 use crate::room::{camera, shoot, stamp};
 use nalgebra::Vector6;
 use trundle_core::{ColorImage, DepthImage, Pose3, RgbdImage};

@@ -1,3 +1,5 @@
+//! SLAM on rendered walks with known poses.
+
 use crate::room::{Clean, camera, shoot};
 use crate::walks::{dark, turned};
 use nalgebra::Vector6;

@@ -1,3 +1,5 @@
+//! Determinism of the feature extraction.
+
 use crate::texture::{noisy, picture};
 use trundle_core::GrayImage;
 use trundle_vision::{Features, OrbConfig, OrbExtractor};

@@ -1,3 +1,5 @@
+//! Features under roll, scale and noise.
+
 use crate::texture::{noisy, picture};
 use crate::view::about;
 use trundle_core::{GrayImage, Vector2};

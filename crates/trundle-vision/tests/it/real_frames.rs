@@ -1,3 +1,5 @@
+//! Motion between real images.
+
 use crate::tum::Recording;
 use trundle_core::{DepthImage, PinholeCamera, Pose3, Vector2, Vector3};
 use trundle_vision::{

@@ -1,3 +1,5 @@
+//! Spread of the features over the image.
+
 use crate::texture::picture;
 use trundle_core::GrayImage;
 use trundle_vision::{Features, OrbConfig, OrbExtractor};

@@ -1,3 +1,5 @@
+//! A synthetic texture for the tests.
+
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{GrayImage, Vector2};

@@ -1,3 +1,5 @@
+//! Real images of the TUM data set.
+
 use std::path::{Path, PathBuf};
 use trundle_core::{ColorImage, DepthImage, Distortion, GrayImage, PinholeCamera, Pose3, gray_from_color};
 

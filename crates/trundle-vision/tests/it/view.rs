@@ -1,3 +1,5 @@
+//! Rendered views of a textured plane.
+
 use trundle_core::{GrayImage, Vector2};
 
 /// Turns by `degrees` and magnifies around the middle of an image.

@@ -1,3 +1,5 @@
+//! Scene files.
+
 use std::path::Path;
 use trundle_core::Pose2;
 use trundle_sim::import::{GltfOptions, UpAxis};

@@ -1,3 +1,5 @@
+//! The office scene.
+
 use trundle_core::{Footprint, PinholeCamera, Pose2, Pose3, Vector3};
 use trundle_sim::scenes::{OFFICE_RING, OFFICE_TWINS};
 use trundle_sim::{HeightBand, Renderer, Scene, View, camera_mount};

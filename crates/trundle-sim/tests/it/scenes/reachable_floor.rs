@@ -1,3 +1,5 @@
+//! The floor that a disc reaches from a start.
+
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Vector2};
 
 /// Free positions of a disc on a true grid.
