@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DifferentialDrive {
-    /// Radius of the driven wheels, m, above 0, in a robot file to 0.5. Calibration estimates the remaining error. Without the table 0.035: the Kobuki.
+    /// Radius of the driven wheels, m, above 0, in a robot file at most 0.5. Calibration estimates the remaining error. Without the table 0.035: the Kobuki.
     pub wheel_radius: f64,
-    /// Distance between the driven wheels, m, above 0, in a robot file to 2. Without the table 0.23: the Kobuki.
+    /// Distance between the driven wheels, m, above 0, in a robot file at most 2. Without the table 0.23: the Kobuki.
     pub wheelbase: f64,
     /// Number of encoder ticks per wheel turn, above 0. Without the table 2578.33: the Kobuki.
     pub ticks_per_turn: f64,
@@ -57,15 +57,15 @@ impl DifferentialDrive {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DriveLimits {
-    /// Highest speed of each wheel, m/s, above 0, in a robot file to 5. It bounds |v| + wheelbase / 2 |omega|. Without the table 0.7: the Kobuki.
+    /// Highest speed of each wheel, m/s, above 0, in a robot file at most 5. It bounds |v| + wheelbase / 2 |omega|. Without the table 0.7: the Kobuki.
     pub wheel_speed: f64,
-    /// Highest forward speed, m/s, above 0, in a robot file to 5. Without the table 0.7: the Kobuki.
+    /// Highest forward speed, m/s, above 0, in a robot file at most 5. Without the table 0.7: the Kobuki.
     pub v: f64,
-    /// Highest turn rate, rad/s, above 0, in a robot file to 15. Without the table 3.14 (180 deg/s): the Kobuki.
+    /// Highest turn rate, rad/s, above 0, in a robot file at most 15. Without the table 3.14 (180 deg/s): the Kobuki.
     pub omega: f64,
-    /// Highest acceleration and deceleration, m/s^2, above 0, in a robot file to 20. Without the table 0.5 (ours): gentle enough for a robot of 1 m height.
+    /// Highest acceleration and deceleration, m/s^2, above 0, in a robot file at most 20. Without the table 0.5 (ours): gentle enough for a robot of 1 m height.
     pub acceleration: f64,
-    /// Highest angular acceleration and deceleration, rad/s^2, above 0, in a robot file to 100. Without the table 3 (ours).
+    /// Highest angular acceleration and deceleration, rad/s^2, above 0, in a robot file at most 100. Without the table 3 (ours).
     pub angular_acceleration: f64,
 }
 

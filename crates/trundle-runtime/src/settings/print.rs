@@ -81,7 +81,7 @@ mod tests {
         let text = to_commented_toml(&RobotConfig::default());
         let at = text.find("wheel_radius_m = 0.035").unwrap();
         let comment = text[..at].rsplit("[drive]\n").next().unwrap();
-        assert!(comment.starts_with("# Radius of the driven wheels, m."), "{comment}");
+        assert!(comment.starts_with("# Radius of the driven wheels, m, above 0"), "{comment}");
         assert!(comment.lines().all(|line| line.starts_with('#')), "{comment}");
         let values = text.lines().filter(|line| !line.starts_with('#') && line.contains(" = ")).count();
         let unset = text.lines().filter(|line| line.ends_with(" is not set")).count();
