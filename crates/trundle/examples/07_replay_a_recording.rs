@@ -16,11 +16,18 @@ use trundle::sim::{Scene, SimConfig, Simulator};
 /// When the recording cannot be read.
 pub fn run() -> Result<(), Box<dyn Error>> {
     let argument = std::env::args().nth(1).map(PathBuf::from).filter(|argument| argument.is_file());
-    let file = match argument {
-        Some(file) => file,
-        None => record(&std::env::temp_dir().join(format!("trundle-example-{}.mcap", std::process::id())))?,
-    };
-    let mut reader = RecordingReader::open(&file)?;
+    if let Some(file) = argument {
+        return count(&file);
+    }
+    let file = std::env::temp_dir().join(format!("trundle-example-{}.mcap", std::process::id()));
+    let result = record(&file).and_then(|()| count(&file));
+    std::fs::remove_file(&file)?;
+    result
+}
+
+/// Prints the number of events of each kind.
+fn count(file: &Path) -> Result<(), Box<dyn Error>> {
+    let mut reader = RecordingReader::open(file)?;
     let (mut wheels, mut images) = (0, 0);
     while let Some(message) = reader.next_message()? {
         if let RecordedMessage::Event(event) = message {
@@ -37,7 +44,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
 }
 
 /// A recording of the simulator standing still for half a second.
-fn record(file: &Path) -> Result<PathBuf, Box<dyn Error>> {
+fn record(file: &Path) -> Result<(), Box<dyn Error>> {
     let mut body = Simulator::new(Scene::by_name("demo", 1)?, SimConfig::default(), 1)?;
     let mut recorder = Recorder::create(file)?;
     while let Some(event) = body.next_event()? {
@@ -47,7 +54,7 @@ fn record(file: &Path) -> Result<PathBuf, Box<dyn Error>> {
         recorder.record_event(&EncodedEvent::encode(&event)?)?;
     }
     recorder.finish()?;
-    Ok(file.to_path_buf())
+    Ok(())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

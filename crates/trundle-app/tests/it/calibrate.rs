@@ -93,26 +93,23 @@ fn late(event: SensorEvent) -> SensorEvent {
 
 /// The drive with turns and straight parts, images late; recorded once.
 fn late_drive() -> CalibrationInput {
-    static FILE: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
-    let (_, file) = FILE.get_or_init(|| {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("recording.mcap");
-        record(&file, robot(), TURNS_AND_STRAIGHT, |event| Some(late(event)));
-        (folder, file)
-    });
+    static FILE: OnceLock<PathBuf> = OnceLock::new();
+    let file = FILE.get_or_init(|| recorded("calibrate-late.mcap", |event| Some(late(event))));
     CalibrationInput::open(file, false).unwrap()
 }
 
 /// The drive with images on time.
 fn drive_on_time() -> CalibrationInput {
-    static FILE: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
-    let (_, file) = FILE.get_or_init(|| {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("recording.mcap");
-        record(&file, robot(), TURNS_AND_STRAIGHT, Some);
-        (folder, file)
-    });
+    static FILE: OnceLock<PathBuf> = OnceLock::new();
+    let file = FILE.get_or_init(|| recorded("calibrate-on-time.mcap", Some));
     CalibrationInput::open(file, false).unwrap()
+}
+
+/// Records the drive into a file of the build folder: a temporary folder of a static is never removed.
+fn recorded(name: &str, change: impl Fn(SensorEvent) -> Option<SensorEvent>) -> PathBuf {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    record(&file, robot(), TURNS_AND_STRAIGHT, change);
+    file
 }
 
 /// Asserts that the error of the calibrated value is within `limit`, and its standard deviation too.
