@@ -195,7 +195,10 @@ impl Navigator {
         let is_over = self.tools.options.patience.is_some_and(|patience| time > patience);
         if is_over && !self.looks_again(s) {
             let state = self.state();
-            let looked = self.tools.guard.last_look().filter(|_| self.searches_over_unseen_floor());
+            // Near a closed door the camera is blind for a moment: that is not the cause.
+            let is_blind = self.reason_kind() == Some(ReasonKind::ImageMissing);
+            let looked = self.tools.guard.last_look();
+            let looked = looked.filter(|_| is_blind || self.searches_over_unseen_floor());
             let blocked =
                 looked.map(|look| self.tools.planner.no_path(NoPath::Blocked { nearest: look.nearest }));
             let cause = blocked.or_else(|| state.reason().cloned());
