@@ -19,6 +19,10 @@ pub struct Distortion {
     pub k3: f64,
 }
 
+/// Smallest and largest plausible focal length of a pinhole camera, as a multiple of the image's side \[1\]: fields of view of 160 and 3 degrees.
+/// Source: ours.
+pub const FOCAL_LENGTH_PER_SIDE: (f64, f64) = (0.09, 20.0);
+
 /// A pinhole camera with Brown-Conrady distortion and a rolling shutter. Pixel (0, 0) is the centre of the top-left pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]

@@ -46,7 +46,7 @@ pub use body::{Cliff, RobotBody, SensorEvent, Touch};
 pub use body_event::{
     Battery, BodyEvent, BodyEventKind, Button, Device, DockBeams, DockInfrared, Link, PerWheel, PowerSource,
 };
-pub use camera::{Distortion, PinholeCamera};
+pub use camera::{Distortion, FOCAL_LENGTH_PER_SIDE, PinholeCamera};
 pub use camera_motion::CameraMotion;
 pub use deskew::deskewed;
 pub use drive::{DifferentialDrive, DriveLimits};

@@ -53,6 +53,14 @@ struct Anchor {
     covariance: Matrix3<f64>,
 }
 
+impl Anchor {
+    /// The anchor's covariance as that of a base pose in its map, right perturbation.
+    fn covariance_at(&self, pose: &Pose2) -> Matrix3<f64> {
+        let to_base = adjoint(&pose.inverse());
+        to_base * self.covariance * to_base.transpose()
+    }
+}
+
 /// Ratio of the variances of base and anchor below which a visual pose refines the anchor. Above it both have a common error. Source: ours.
 const MAX_VARIANCE_RATIO: f64 = 0.25;
 
@@ -118,8 +126,7 @@ impl VisualFrame {
         };
         let own = planar_covariance(&visual.covariance, &self.base_from_camera);
         let pose = map_from_base.to_pose2();
-        let to_base = adjoint(&pose.inverse());
-        let anchor_covariance = to_base * anchor.covariance * to_base.transpose();
+        let anchor_covariance = anchor.covariance_at(&pose);
         let noise = (config.visual_noise() + own) * factor + out_of_plane(&map_from_base) + anchor_covariance;
         let (prior_inflation, scale_error) = (Matrix3::zeros(), Vector3::zeros());
         let variance_floor = (anchor_covariance + own).diagonal();
@@ -131,12 +138,12 @@ impl VisualFrame {
     /// the anchor does not change.
     pub(crate) fn refine(&mut self, before: &Belief, measurement: &Measurement) {
         let Some(anchor) = self.anchors.get_mut(&self.current) else { return };
-        let to_base = adjoint(&measurement.pose.inverse());
-        let anchor_variance = (to_base * anchor.covariance * to_base.transpose()).diagonal().xy().max();
+        let anchor_variance = anchor.covariance_at(&measurement.pose).diagonal().xy().max();
         if before.position_variance() > MAX_VARIANCE_RATIO * anchor_variance || anchor_variance == 0.0 {
             return;
         }
         let (innovation, _) = before.innovation(measurement);
+        let to_base = adjoint(&measurement.pose.inverse());
         let Some(spread) = symmetric(before.covariance() + measurement.noise).cholesky() else { return };
         let gain = anchor.covariance * to_base.transpose() * spread.inverse();
         // An anchor with an error ahead gives measured poses the same error.

@@ -154,8 +154,10 @@ impl PoseMonitor {
     /// Ends the evidence of a displacement if the scans since then, from several poses, fit the map at `map_from_base`, with the odometry at
     /// `odom_from_base`.
     pub fn confirm_by_scans(&mut self, grid: &OccupancyGrid, map_from_base: Pose2, odom_from_base: Pose2) {
-        let nats = self.recent.log_likelihood(grid, map_from_base, odom_from_base);
-        if self.recent.len() >= CONFIRMING_SCANS && nats > CONFIRMING_SCANS as f64 * CONFIRMED_NATS {
+        let needed = CONFIRMING_SCANS as f64 * CONFIRMED_NATS;
+        if self.recent.len() >= CONFIRMING_SCANS
+            && self.recent.log_likelihood(grid, map_from_base, odom_from_base) > needed
+        {
             self.displacement.settle();
         }
     }

@@ -104,6 +104,13 @@ mod tests {
         VisualJump::judge(&drift, found, Pose2::IDENTITY, (&recent, &map.map()))
     }
 
+    /// The verdict after one scan of a room from a pose.
+    fn verdict_by_scan(drift: &Drift, found: Pose2, (room, at): (&Room, Pose2)) -> VisualJump {
+        let mut recent = RecentScans::default();
+        recent.add(Pose2::IDENTITY, &room.scan(at, 0.0));
+        VisualJump::judge(drift, found, Pose2::IDENTITY, (&recent, &room.map()))
+    }
+
     #[test]
     fn the_look_alike_pose_half_a_turn_on_is_refused() {
         let room = Room::default();
@@ -146,10 +153,8 @@ mod tests {
         let room = Room::with_corner_box();
         let step = BELIEF.pose * Pose2::new(0.0, 0.0, 0.12);
         let judge = |is_odometry_wrong, scan_of: Pose2| {
-            let mut recent = RecentScans::default();
-            recent.add(Pose2::IDENTITY, &room.scan(scan_of, 0.0));
             let drift = Drift { belief: BELIEF, is_odometry_wrong, is_displaced: false, is_corrected: false };
-            VisualJump::judge(&drift, step, Pose2::IDENTITY, (&recent, &room.map()))
+            verdict_by_scan(&drift, step, (&room, scan_of))
         };
         // A scan between both poses, slightly nearer to the estimate: worse at the visual pose, but not decisively.
         let between = BELIEF.pose * Pose2::new(0.0, 0.0, 0.05);
@@ -169,12 +174,9 @@ mod tests {
             (0.02, far, VisualJump::Allowed),
             (100.0, far, VisualJump::Allowed),
         ] {
-            let mut recent = RecentScans::default();
-            recent.add(Pose2::IDENTITY, &room.scan(scan_of, 0.0));
             let belief = PoseBelief { position_sigma: sigma, heading_sigma: sigma, ..BELIEF };
             let drift = Drift { belief, is_odometry_wrong: false, is_displaced: true, is_corrected: true };
-            let verdict = VisualJump::judge(&drift, far, Pose2::IDENTITY, (&recent, &room.map()));
-            assert_eq!(verdict, expected, "{sigma} {scan_of:?}");
+            assert_eq!(verdict_by_scan(&drift, far, (&room, scan_of)), expected, "{sigma} {scan_of:?}");
         }
     }
 
@@ -182,10 +184,8 @@ mod tests {
     fn a_near_pose_after_a_correction_of_the_visual_map_is_refused_where_the_scans_fit_the_estimate() {
         let room = Room::with_corner_box();
         let judge = |is_corrected, off: Pose2, scan_of: Pose2| {
-            let mut recent = RecentScans::default();
-            recent.add(Pose2::IDENTITY, &room.scan(scan_of, 0.0));
             let drift = Drift { belief: BELIEF, is_odometry_wrong: false, is_displaced: false, is_corrected };
-            VisualJump::judge(&drift, BELIEF.pose * off, Pose2::IDENTITY, (&recent, &room.map()))
+            verdict_by_scan(&drift, BELIEF.pose * off, (&room, scan_of))
         };
         let pulled = Pose2::new(0.08, 0.08, 0.05);
         assert_eq!(judge(false, pulled, BELIEF.pose), VisualJump::Allowed);

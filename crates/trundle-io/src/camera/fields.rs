@@ -1,7 +1,7 @@
 //! The numbers of a camera file of any format.
 
 use super::depth_scale::checked_depth_scale;
-use trundle_core::{Distortion, Invalid, PinholeCamera};
+use trundle_core::{Distortion, FOCAL_LENGTH_PER_SIDE, Invalid, PinholeCamera};
 
 /// The numbers of a camera file.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,12 +29,9 @@ impl CameraFields {
     }
 }
 
-/// Smallest and largest focal length, of the image's side \[1\]: fields of view of 160 and 3 degrees. Source: ours.
-const FOCAL_SHARES: [f64; 2] = [0.09, 20.0];
-
 /// Refuses a focal length that no rectified camera has: it is in mm, or in widths of the image.
 fn require_focal(name: &str, value: f64, side: usize) -> Result<(), Invalid> {
-    let [low, high] = FOCAL_SHARES.map(|share| share * side as f64);
+    let (low, high) = (FOCAL_LENGTH_PER_SIDE.0 * side as f64, FOCAL_LENGTH_PER_SIDE.1 * side as f64);
     if (low..=high).contains(&value) {
         return Ok(());
     }

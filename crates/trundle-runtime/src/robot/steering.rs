@@ -125,8 +125,8 @@ impl Steering {
         if let Some(sent) = sent.or(fallback.map(|fallback| fallback.sent)) {
             decision_worker.navigator.sent(sent);
         }
-        for contact_readings in self.background.contact_readings.drain(..) {
-            match contact_readings {
+        for reading in self.background.contact_readings.drain(..) {
+            match reading {
                 ContactReading::Touched(pressed) => decision_worker.navigator.touch(pressed),
                 ContactReading::OverEdge(over_edge) => decision_worker.navigator.cliff(over_edge),
             }

@@ -1,7 +1,7 @@
 //! Implausible numbers, such as millimetres for metres, or degrees for radians.
 
 use crate::RobotConfig;
-use trundle_core::Invalid;
+use trundle_core::{FOCAL_LENGTH_PER_SIDE, Invalid};
 
 /// A number, its range for indoor robots, and the likely unit of a number outside the range.
 struct Plausible {
@@ -27,8 +27,6 @@ const MAX_TURN_RATE_RAD_S: f64 = 15.0;
 const MAX_ACCELERATION_M_S2: f64 = 20.0;
 /// Largest angular acceleration \[rad/s^2\]. Source: ours.
 const MAX_ANGULAR_ACCELERATION_RAD_S2: f64 = 100.0;
-/// Range of focal lengths, as a multiple of the image's width: views of 160 and of 3 degrees. Source: ours.
-const FOCAL_LENGTH_PER_WIDTH: (f64, f64) = (0.09, 20.0);
 
 /// Refuses implausible numbers, and suggests the unit that was probably meant.
 ///
@@ -80,7 +78,7 @@ fn farthest_corner(config: &RobotConfig) -> f64 {
 fn camera(config: &RobotConfig) -> [Plausible; 4] {
     let camera = &config.camera;
     let (width, height) = (camera.width() as f64, camera.height() as f64);
-    let (low, high) = (width * FOCAL_LENGTH_PER_WIDTH.0, width * FOCAL_LENGTH_PER_WIDTH.1);
+    let (low, high) = (width * FOCAL_LENGTH_PER_SIDE.0, width * FOCAL_LENGTH_PER_SIDE.1);
     let focal =
         |path, value| Plausible { path, value, unit: "px", low, high, meant: "another unit than pixels" };
     let centre = |path, value, high| Plausible {

@@ -139,7 +139,10 @@ fn wheels_that_count_nothing_stop_it_without_a_visual_motion() {
     );
     let sigma = |report: &StepReport| report.estimate.unwrap().covariance[(0, 0)].sqrt();
     let max = reports.iter().map(sigma).fold(0.0, f64::max);
-    assert!((0.5 * driven..3.0 * driven).contains(&max), "{max} m after {driven} m that nobody counted");
+    assert!(
+        (0.5 * driven..3.0 * driven).contains(&max),
+        "{max} m after {driven} m that the encoders did not count"
+    );
 }
 
 #[test]
