@@ -51,9 +51,7 @@ pub struct VisualEvidence<'a> {
     pub visual_from_base: Pose3,
     /// `map_from_base` by the visual pose; `None` before its visual map is anchored.
     pub found: Option<Pose2>,
-    /// Pose by the odometry at the image.
-    pub odom_from_base: Pose2,
-    /// The odometry at the image, with its covariance; `None` if the image is too old.
+    /// The odometry at the image; `None` if the image is too old.
     pub odometry: Option<OdometryState>,
     /// Whether wheels and gyro measure no motion.
     pub is_still: bool,
@@ -107,12 +105,16 @@ impl PoseMonitor {
             (_, VisualMotion::FrameMoved) => return VisualVerdict::FrameMoved,
             (_, VisualMotion::OwnAgainstWheels) => {
                 self.wrong_odometry = Some(evidence.visual.stamp);
-                self.recent.restart(evidence.odom_from_base, evidence.scan);
+                if let Some(odometry) = evidence.odometry {
+                    self.recent.restart(odometry.pose, evidence.scan);
+                }
             }
             (_, VisualMotion::Own) => {}
         }
-        let VisualEvidence { visual, found, belief, grid, odom_from_base, .. } = *evidence;
-        let Some((found, belief)) = found.zip(belief) else { return VisualVerdict::Accepted };
+        let VisualEvidence { visual, found, belief, grid, odometry, .. } = *evidence;
+        let Some(((found, belief), odometry)) = found.zip(belief).zip(odometry) else {
+            return VisualVerdict::Accepted;
+        };
         let is_odometry_wrong =
             self.wrong_odometry.is_some_and(|since| visual.stamp - since <= WRONG_ODOMETRY_S);
         let drift = Drift {
@@ -121,7 +123,7 @@ impl PoseMonitor {
             is_displaced: visual_use == VisualUse::Anywhere,
             is_corrected: visual.recognised || evidence.is_corrected,
         };
-        match VisualJump::judge(&drift, found, odom_from_base, (&self.recent, grid)) {
+        match VisualJump::judge(&drift, found, odometry.pose, (&self.recent, grid)) {
             VisualJump::Allowed => VisualVerdict::Accepted,
             VisualJump::Refused if visual.recognised && !evidence.is_corrected => {
                 VisualVerdict::FalseRecognition

@@ -40,7 +40,7 @@ impl Robot {
         }
         let is_corrected = corrected_trajectory.is_some();
         let visual = visual_pose(&track, is_corrected);
-        let judge = |visual| self.judge_visual_pose(visual, is_corrected, odom_from_base, scan.as_ref());
+        let judge = |visual| self.judge_visual_pose(visual, is_corrected, scan.as_ref());
         let verdict = visual.as_ref().map(judge);
         let before = self.localizer.estimate().pose;
         let correction =

@@ -7,12 +7,11 @@ use trundle_estimation::{Correction, ImageEvidence, PoseBelief, VisualEvidence, 
 use trundle_slam::TrackReport;
 
 impl Robot {
-    /// The use of a visual pose, taken at `odom_from_base` with `scan`.
+    /// The use of a visual pose, taken with `scan`.
     pub(super) fn judge_visual_pose(
         &mut self,
         visual: &VisualPose,
         is_corrected: bool,
-        odom_from_base: Pose2,
         scan: Option<&Scan>,
     ) -> VisualVerdict {
         let belief = self.belief_at(visual.stamp);
@@ -21,7 +20,6 @@ impl Robot {
             is_corrected,
             visual_from_base: visual.visual_from_camera * self.base_from_camera.inverse(),
             found: self.localizer.base_by_visual(visual),
-            odom_from_base,
             odometry: self.localizer.odometry_at(visual.stamp).ok(),
             is_still: self.odometry.is_still(),
             scan,
