@@ -14,10 +14,12 @@ use trundle_docking::{DockingConfig, DockingPlan, DockingPlanner};
 const TIMES: usize = 3;
 
 fn main() {
-    let standard = DockingConfig::default();
-    let points_work = std::env::args().nth(2).map_or(standard.points_work, |n| n.parse().expect("a number"));
-    let plan_work = standard.plan_work.max(points_work);
-    let planner = DockingPlanner::new(DockingConfig { points_work, plan_work, ..standard }).expect("valid");
+    let mut config = DockingConfig::default();
+    if let Some(work) = std::env::args().nth(2) {
+        config.points_work = work.parse().expect("a number");
+    }
+    config.plan_work = config.plan_work.max(config.points_work);
+    let planner = DockingPlanner::new(config).expect("valid");
     let mut worst = (0.0, String::new());
     let word = std::env::args().nth(1).unwrap_or_default();
     for problem in clouds::scenes().into_iter().filter(|problem| problem.name.contains(&word)) {

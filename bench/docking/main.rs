@@ -99,12 +99,17 @@ fn problems() -> Result<Vec<Problem>, String> {
 fn optimal(problems: &[Problem], boxes: usize) -> Row {
     let nodes = number("--nodes", DockingConfig::default().search_nodes);
     let margin = argument("--margin").map_or(0.0, |value| value.parse().expect("metres"));
-    let base = DockingConfig { margin, search_nodes: nodes, ..DockingConfig::default() };
+    let mut base = DockingConfig::default();
+    base.margin = margin;
+    base.search_nodes = nodes;
     let mut row = plan_all("trundle, optimal", problems, &DockingPlanner::new(base.clone()).expect("valid"));
     // Many boxes only where a few leave more than 15 %, and only until they do not.
     let judge = |bound_boxes, gap| {
-        DockingPlanner::new(DockingConfig { bound_boxes, gap, search_nodes: 0, ..base.clone() })
-            .expect("valid")
+        let mut config = base.clone();
+        config.bound_boxes = bound_boxes;
+        config.gap = gap;
+        config.search_nodes = 0;
+        DockingPlanner::new(config).expect("valid")
     };
     let judges = [judge(boxes / 20, 0.02), judge(boxes, 0.125)];
     let bound = |problem: &Problem, time: f64| {
@@ -125,9 +130,13 @@ fn optimal(problems: &[Problem], boxes: usize) -> Row {
 fn by_paper(problems: &[Problem]) -> Row {
     // A distance of 1 cm is asked for: each axis gets its part of it.
     let part = number("--paper-mm", 7) as f64 * 1e-3;
-    let paper =
-        Hong24Config { lateral_threshold: part, longitudinal_threshold: part, ..Hong24Config::default() };
-    let config = DockingConfig { method: Method::Hong24, margin: 0.0, paper, ..DockingConfig::default() };
+    let mut paper = Hong24Config::default();
+    paper.lateral_threshold = part;
+    paper.longitudinal_threshold = part;
+    let mut config = DockingConfig::default();
+    config.method = Method::Hong24;
+    config.margin = 0.0;
+    config.paper = paper;
     plan_all("[Hong24]", problems, &DockingPlanner::new(config).expect("valid"))
 }
 
@@ -153,7 +162,8 @@ fn by_hybrid(problems: &[Problem]) -> Row {
 
 /// Solvable problems with noise and lag: the first `max` by the positioner, the first `few` by the others.
 fn closed_loop(problems: &[&Problem], max: usize, few: usize) {
-    let paper = DockingConfig { method: Method::Hong24, ..DockingConfig::default() };
+    let mut paper = DockingConfig::default();
+    paper.method = Method::Hong24;
     let run = |docking: &DockingConfig, problem: &Problem, i: usize| world::run(problem, docking, i as u64);
     let scene = |problem: &Problem| problem.scene().expect("valid");
     let mut tracks = vec![Track::new("trundle, optimal"), Track::new("[Hong24]")];

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The live page: its built files are those of its source, and it works in a real browser. Skipped by name without Node, npm or Chromium.
-# usage: check.sh [TRUNDLE]
+# The live page: its built files are those of its source, and it works in a real browser (5 minutes). Skipped by name without Node, npm or a
+# Chromium that can be had.
+# usage: check.sh [TRUNDLE]; with $PICTURES the pictures of the page go into that folder
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 root=$PWD/../..
@@ -28,4 +29,8 @@ if ! npm ci --silent --no-audit --no-fund >/dev/null 2>&1; then
     echo "skipped: live page in a browser (playwright-core cannot be had)"
     exit 0
 fi
-node test.mjs "$trundle" ${PICTURES:+"$PICTURES"}
+if ! chromium=$(bash get-browser.sh "$root/target/live-browser" 2>/dev/null); then
+    echo "skipped: live page in a browser (no Chromium: apt-get install chromium)"
+    exit 0
+fi
+node test.mjs "$trundle" "$chromium" ${PICTURES:+"$PICTURES"}

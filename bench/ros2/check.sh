@@ -1,6 +1,6 @@
 #!/bin/sh
-# What continuous integration runs: the environment, the interface table, the robot alone, then trundle driven by strangers. Not run there:
-# latency.py, whose figures a loaded machine spoils, and the longer parts of user.py and faults.py.
+# What continuous integration runs: the environment, the interface table, each structure against rclpy's serialiser, the robot alone, then
+# trundle driven by strangers. Not run there: latency.py, whose figures a loaded machine spoils, and the longer parts of user.py and faults.py.
 #
 #   check.sh DIR [TRUNDLE]
 #
@@ -29,7 +29,20 @@ run() {
     echo "   $(($(date +%s) - begin)) s"
 }
 
+# The features are those of the program, so that its crates are not built twice.
+interface_bytes() {
+    cargo build --quiet --release --manifest-path "$here/../../Cargo.toml" --target-dir "$target" --package trundle-ros2 \
+        --package trundle-cli --features trundle-cli/ros2,trundle-cli/mqtt --example interface_bytes
+}
+
 run interfaces.py
+target=${CARGO_TARGET_DIR:-$here/../../target}
+if command -v cargo >/dev/null; then
+    interface_bytes || failed=1
+    run serialiser.py --program "$target/release/examples/interface_bytes"
+else
+    echo "skipped: serialiser.py: cargo, which builds the structures in Rust, is absent"
+fi
 run robot_alone.py
 if [ $# -gt 1 ]; then
     run goals.py --trundle "$2" --worlds flat corridor-a

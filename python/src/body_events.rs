@@ -126,7 +126,7 @@ impl BodyCondition {
 
 impl BodyCondition {
     fn of(stamp: f64, kind: BodyEventKind) -> PyResult<Self> {
-        let event = BodyEvent { stamp: self::stamp(stamp)?, kind };
+        let event = BodyEvent::new(self::stamp(stamp)?, kind);
         Ok(Self { event: event.checked().map_err(value_error)? })
     }
 }

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use trundle::app::dock::{DockingResult, DockingTask};
 use trundle::core::{Footprint, Pose2, Vector2};
-use trundle::docking::{DockingConfig, DockingPlan, Motion, Obstacle, ObstacleScene, Solution};
+use trundle::docking::{DockingPlan, Motion, Obstacle, ObstacleScene, Solution};
 
 /// Plans turns in place and straight moves from `start` to `goal`, both (3,): x m, y m, theta rad, exact for the footprint.
 ///
@@ -43,8 +43,8 @@ pub fn dock<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (start, goal) = (pose2(start, "start")?, pose2(goal, "goal")?);
     let robot = robot_config(config)?;
-    let planner = robot.docking.planner.clone();
-    let planner = DockingConfig { margin: margin.unwrap_or(planner.margin), ..planner };
+    let mut planner = robot.docking.planner.clone();
+    planner.margin = margin.unwrap_or(planner.margin);
     let outline = match footprint {
         Some(object) => self::footprint(object)?,
         None => robot.footprint().map_err(value_error)?,

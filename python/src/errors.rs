@@ -7,7 +7,7 @@ use std::io::ErrorKind;
 use trundle::app::AppError;
 use trundle::io::IoError;
 
-/// `ValueError` for a value that cannot be accepted.
+/// `ValueError` for an invalid value.
 pub fn value_error(problem: impl Display) -> PyErr {
     PyValueError::new_err(problem.to_string())
 }

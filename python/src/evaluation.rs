@@ -28,7 +28,7 @@ pub fn ate<'py>(
     max_difference: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let alignment = choice("align", align, &Alignment::CHOICES)?;
-    let config = AbsoluteConfig { max_difference, alignment };
+    let config = AbsoluteConfig::new(max_difference, alignment);
     let (reference, estimate) = (rows(reference, "reference")?, rows(estimate, "estimate")?);
     let found = py.detach(|| {
         let (truth, poses) = (trajectory(&reference, "reference")?, trajectory(&estimate, "estimate")?);
@@ -62,7 +62,7 @@ pub fn rpe<'py>(
     max_difference: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let delta = Delta::of(delta, choice("unit", unit, &DeltaUnit::CHOICES)?).map_err(value_error)?;
-    let config = RelativeConfig { max_difference, delta, all_pairs };
+    let config = RelativeConfig::new(max_difference, delta, all_pairs);
     let (reference, estimate) = (rows(reference, "reference")?, rows(estimate, "estimate")?);
     let found = py.detach(|| {
         let (truth, poses) = (trajectory(&reference, "reference")?, trajectory(&estimate, "estimate")?);

@@ -34,13 +34,10 @@ impl GridMapper {
     #[new]
     #[pyo3(signature = (resolution=0.05, *, max_range=None, half_extent=None))]
     fn new(resolution: f64, max_range: Option<f64>, half_extent: Option<f64>) -> PyResult<Self> {
-        let default = MapperConfig::default();
-        let config = MapperConfig {
-            resolution,
-            max_range: max_range.unwrap_or(default.max_range),
-            half_extent: half_extent.unwrap_or(default.half_extent),
-            ..default
-        };
+        let mut config = MapperConfig::default();
+        config.resolution = resolution;
+        config.max_range = max_range.unwrap_or(config.max_range);
+        config.half_extent = half_extent.unwrap_or(config.half_extent);
         Ok(Self { mapper: Grid::new(config).map_err(value_error)? })
     }
 
@@ -104,9 +101,9 @@ impl ParticleMapper {
     #[new]
     #[pyo3(signature = (seed=0, *, particles=None, resolution=None))]
     fn new(seed: u64, particles: Option<usize>, resolution: Option<f64>) -> PyResult<Self> {
-        let default = ParticleConfig::default();
-        let map = MapperConfig { resolution: resolution.unwrap_or(default.map.resolution), ..default.map };
-        let config = ParticleConfig { particles: particles.unwrap_or(default.particles), map, ..default };
+        let mut config = ParticleConfig::default();
+        config.map.resolution = resolution.unwrap_or(config.map.resolution);
+        config.particles = particles.unwrap_or(config.particles);
         Ok(Self { mapper: Particles::new(config, seed).map_err(value_error)? })
     }
 

@@ -169,12 +169,12 @@ impl Simulator {
 
 /// The simulated robot with these sensors.
 pub fn sim_config(camera: Option<&str>, laser: Option<&str>, noise: bool) -> PyResult<SimConfig> {
-    let config = match camera {
+    let mut config = match camera {
         Some(name) => preset("camera", name, &SimConfig::CAMERAS)?,
-        None => SimConfig { has_camera: false, ..SimConfig::default() },
+        None => SimConfig::default(),
     };
-    let laser = laser.map(|name| preset("laser", name, &LaserConfig::PRESETS)).transpose()?;
-    let config = SimConfig { laser, ..config };
+    config.has_camera = camera.is_some();
+    config.laser = laser.map(|name| preset("laser", name, &LaserConfig::PRESETS)).transpose()?;
     Ok(if noise { config } else { config.without_noise() })
 }
 

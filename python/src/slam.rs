@@ -216,7 +216,9 @@ impl RgbdSlam {
 }
 
 fn config(seed: u64) -> SlamConfig {
-    SlamConfig { seed, ..SlamConfig::default() }
+    let mut config = SlamConfig::default();
+    config.seed = seed;
+    config
 }
 
 fn read_bytes(path: &Path) -> Result<Vec<u8>, IoError> {

@@ -94,9 +94,12 @@ struct Setting {
 /// Writes the list and the page; with `check_only`, only reports whether they are up to date.
 pub fn run(root: &Path, check_only: bool) -> Verdict {
     let settings = read(root)?;
-    let problems: Vec<&Setting> = settings.iter().filter(|s| s.unit == "?").collect();
-    for setting in &problems {
-        println!("{}: no unit in '{}'", setting.path, setting.doc);
+    let without_unit = settings.iter().filter(|s| s.unit == "?").map(|s| (s, "unit"));
+    let without_source =
+        settings.iter().filter(|s| !has_source(&s.doc)).map(|s| (s, "source of the default"));
+    let problems: Vec<(&Setting, &str)> = without_unit.chain(without_source).collect();
+    for (setting, lack) in &problems {
+        println!("{}: no {lack} in '{}'", setting.path, setting.doc);
     }
     let files = [(LIST, list(&settings)), (PAGE, page(&settings))];
     let mut is_current = problems.is_empty();
@@ -333,6 +336,13 @@ fn unit_or_none(doc: &str) -> String {
         .unwrap_or_default()
 }
 
+/// Whether the documentation gives the source of the default: a reason after a colon, `ours`, a key of the bibliography, or a page.
+fn has_source(doc: &str) -> bool {
+    let default =
+        ["Default ", "Without the table "].iter().filter_map(|start| doc.rsplit_once(start)).next_back();
+    default.is_none_or(|(_, text)| [": ", "(", "[", ", as "].iter().any(|mark| text.contains(mark)))
+}
+
 /// The suffix of a key for its unit. Empty if the name already ends in a unit.
 fn suffix_after(name: &str, unit: &str) -> &'static str {
     let has_one = UNITS.iter().any(|(_, suffix)| name.ends_with(suffix));
@@ -382,6 +392,19 @@ mod tests {
         assert_eq!(unit_of("A part, ratio, 0 to 1."), "");
         assert_eq!(unit_of("Height, m above the floor, 0 to 1. Default 0.3, s."), "m");
         assert_eq!(unit_of("Something, 0 to 1."), "?");
+    }
+
+    #[test]
+    fn a_default_has_a_source() {
+        let sourced = [
+            "Default 0.3 (ours).",
+            "Default 8 [Rublee11].",
+            "Default 2: two cells.",
+            "Default 1, as `KOBUKI`.",
+        ];
+        assert!(sourced.iter().all(|doc| has_source(&format!("Gap: a length, m, 0 (off) to 1. {doc}"))));
+        assert!(!has_source("Gap: a length, m, 0 (off) to 1. Default 0.3."));
+        assert!(!has_source("Width (of an image), px. Without the table 512."));
     }
 
     #[test]

@@ -10,7 +10,8 @@ pub use choice::choice;
 pub use number::NumberArg;
 pub use place::PlaceArgs;
 
-use clap::Args;
+use crate::output_args::leaf;
+use clap::{ArgMatches, Args};
 use std::path::PathBuf;
 pub use trundle::app::PoseArg;
 use trundle::app::{AppError, load_robot};
@@ -27,6 +28,11 @@ pub struct Common {
     /// Threads to use; the results are the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
+}
+
+/// The number of threads that a command is given; `None`: one per core.
+pub fn threads(matches: &ArgMatches) -> Option<u16> {
+    leaf(matches).try_get_one("threads").ok().flatten().copied()
 }
 
 /// Options of every command that has a robot.

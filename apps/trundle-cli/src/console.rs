@@ -1,6 +1,7 @@
 //! Output on the terminal: results, tables, errors, progress. The only module of the program that prints.
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::Path;
 use std::sync::OnceLock;
 use trundle::app::{AppError, Progress, StepProgress, aligned_table, step_line};
 
@@ -39,6 +40,13 @@ pub fn print_usage(usage: &clap::Error) -> bool {
     usage.use_stderr() || print_failure().is_none()
 }
 
+/// Prints where a result is to be seen, if it is there: the disk may have refused it.
+pub fn print_see(file: &Path) {
+    if file.exists() {
+        print(&format!("See {}", file.display()));
+    }
+}
+
 fn note_refusal(result: std::io::Result<()>) {
     match result {
         // A closed reader is not a failure of the run.
@@ -57,6 +65,14 @@ pub fn print_failure() -> Option<&'static std::io::Error> {
 /// Prints a table of two columns or more on standard output, columns aligned: the first one and texts to the left, numbers to the right.
 pub fn print_table(rows: &[Vec<String>]) {
     aligned_table(rows).iter().for_each(|line| print(line));
+}
+
+/// Prints the table of a result and the path of the file to look at, unless `quiet`.
+pub fn print_result(quiet: bool, rows: &[Vec<String>], place: &Path) {
+    if !quiet {
+        print_table(rows);
+        print_see(place);
+    }
 }
 
 /// A line of progress: a spinner with a message, and the progress that sets it. Clear the line when the work has ended.

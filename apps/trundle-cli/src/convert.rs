@@ -8,8 +8,8 @@ use crate::{console, logging};
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::AppError;
-use trundle::app::convert::{SequenceForm, convert_sequence};
-use trundle::app::sequence_input::{SequenceInput, SequenceOptions};
+use trundle::app::convert::{SequenceForm, convert_sequence, open_for};
+use trundle::app::sequence_input::SequenceOptions;
 use trundle::io::RosTopics;
 
 /// `trundle convert`
@@ -21,7 +21,7 @@ pub struct ConvertArgs {
     /// Folder for the result.
     #[arg(required_unless_present = "list")]
     pub out: Option<OutputDirArg>,
-    /// tum: a TUM RGB-D folder. bag: bag.mcap, a ROS 2 bag.
+    /// tum: a TUM RGB-D folder. bag: bag.mcap, a ROS 2 bag. recording: recording.mcap, which `trundle replay` runs; it needs odometry.
     #[arg(long, value_name = "FORM", default_value = "tum")]
     pub to: SequenceForm,
     /// Only list the topics of a bag or a recording: name, type, messages, encoding of images.
@@ -45,12 +45,8 @@ pub fn run(args: &ConvertArgs) -> Result<Outcome, AppError> {
         console::print_table(&topics.rows().map(Vec::from).collect::<Vec<_>>());
         return Ok(Outcome::Reached);
     };
-    let input = SequenceInput::open(&SequenceOptions {
-        camera: args.camera.camera.as_deref(),
-        depth_scale: args.camera.depth_scale,
-        topics: args.topics.options(),
-        ..SequenceOptions::new(&args.input)
-    })?;
+    let options = SequenceOptions::of_camera(&args.input, args.camera.chosen(), args.topics.options());
+    let input = open_for(&options, args.to)?;
     let folder = logging::output_folder(out)?;
     let display = console::StepDisplay::new(args.common.quiet);
     let converted = convert_sequence(&input, args.to, &folder, &display)?;

@@ -3,56 +3,35 @@
 mod args;
 
 pub use args::DemoArgs;
-use args::DemoMissionArgs;
 
 use crate::outcome::Outcome;
 use crate::{console, logging, run_output};
+use std::path::Path;
 use trundle::app::real_time::run_in_real_time;
-use trundle::app::report::mission_text;
-use trundle::app::vocabulary_file::read_vocabulary;
-use trundle::app::{AppError, MissionRequest, RunLog, RunRecorder, RunSetup, read_checkpoint, run_on_body};
-use trundle::core::Pose2;
-use trundle::experiments::simulated::{
-    SimulatedRealTimeBody, load_scene, read_faults, require_free, simulated_body, simulated_real_time_body,
-    time_limit,
-};
+use trundle::app::{AppError, RunLog, RunRecorder, RunSetup, run_on_body};
+use trundle::experiments::simulated::{DemoRequest, SimulatedRealTimeBody};
 use trundle::io::keep_aside;
-use trundle::runtime::Mission;
-use trundle::sim::{Scene, Simulator};
+use trundle::sim::Simulator;
 
 /// `trundle demo`.
 pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
-    let robot = args.robot.robot()?;
-    let mut scene = load_scene(&args.scene, args.place.options())?;
-    let faults = args.faults.as_deref().map(read_faults).transpose()?.unwrap_or_default();
-    let resumed = args.state.resume.and(args.state.checkpoint.as_deref()).map(read_checkpoint).transpose()?;
-    let mission = match &resumed {
-        Some((checkpoint, _)) => checkpoint.mission.left.clone(),
-        None => mission(&args.mission, &scene)?,
+    let request = DemoRequest {
+        scene: args.scene.clone(),
+        place: args.place.options(),
+        goals: args.mission.goal.iter().map(|goal| goal.0).collect(),
+        is_direct: args.mission.direct,
+        dock: args.mission.dock,
+        is_operated: args.live.is_operated(),
+        real_time: args.real_time,
+        checkpoint: args.state.checkpoint.as_deref().map(Path::to_owned),
+        resume: args.state.resume.map(|pose| pose.0),
+        record: args.record,
+        vocabulary: args.vocabulary.clone(),
+        faults: args.faults.clone(),
+        time_limit: args.time_limit,
+        robot: args.robot.robot()?,
     };
-    let mut setup = RunSetup::new(&scene.name, mission, robot.with_seed(args.place.seed));
-    setup.seed = args.place.seed;
-    setup.map_from_world = scene.start.inverse();
-    setup.is_operated = args.live.is_operated();
-    let limit = if setup.is_operated { f64::MAX } else { time_limit(&setup.mission) };
-    setup.time_limit = args.time_limit.unwrap_or(limit);
-    setup.real_time = args.real_time || setup.is_operated;
-    setup.recording = args.record;
-    if let Some(file) = &args.vocabulary {
-        setup = setup.with_vocabulary(&read_vocabulary(file)?);
-    }
-    if let Some((_, bytes)) = &resumed {
-        setup = setup.resumed_from(bytes);
-    }
-    setup = args.live.with_zones(setup)?;
-    require_free("start", &scene, scene.start, &setup.robot)?;
-    for goal in setup.mission.tasks().iter().filter_map(RunSetup::goal_of) {
-        require_free("goal", &scene, scene.start * goal, &setup.robot)?;
-    }
-    scene.start = args.state.resume.map_or(scene.start, |pose| pose.0);
-    let body = if setup.real_time { simulated_real_time_body } else { simulated_body };
-    let body =
-        Simulator::new(scene, body(&setup.robot, faults)?, args.place.seed).map_err(AppError::input)?;
+    let (setup, body) = request.prepare(|setup| args.live.with_zones(setup))?;
     drive(args, &setup, body)
 }
 
@@ -60,13 +39,8 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
 fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outcome, AppError> {
     let folder = logging::output_folder(&args.out)?;
     if !args.common.quiet {
-        let (scene, seed, mission) = (&setup.scene, setup.seed, mission_text(&setup.mission));
-        console::print(&format!("Room '{scene}', seed {seed}, on camera, wheels and gyro alone: {mission}."));
-        console::print(&setup.recording.announcement(
-            &setup.robot.camera,
-            body.config().camera_rate_hz,
-            setup.time_limit,
-        ));
+        let room = format!("Room '{}', seed {}, on camera, wheels and gyro alone", setup.scene, setup.seed);
+        console::print(&setup.announcement(&room, body.config().camera_rate_hz));
     }
     let (line, progress) = console::progress(args.common.quiet);
     let checkpoint = args.state.checkpoint.as_deref();
@@ -86,13 +60,4 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
     let run = run_on_body(setup, &mut body, recorder, RunLog::default(), front_end);
     line.finish_and_clear();
     run_output::write(setup, run?, None, folder, args.common.quiet)
-}
-
-/// The requested goals, or the scene's. Unless the drive is direct, exploration precedes the goals and the return follows.
-fn mission(args: &DemoMissionArgs, scene: &Scene) -> Result<Mission, AppError> {
-    let mut goals: Vec<Pose2> = args.goal.iter().map(|goal| goal.0).collect();
-    if goals.is_empty() && !(args.direct && args.dock) {
-        goals.push(scene.start_from_goal());
-    }
-    MissionRequest { goals, explore: !args.direct, dock: args.dock, file: None }.mission()
 }

@@ -9,7 +9,7 @@ use crate::{console, logging, output_args};
 use std::path::Path;
 use std::time::Instant;
 use trundle::app::AppError;
-use trundle::app::dock::{DockingRequest, DockingResult, DockingTask, write_docking};
+use trundle::app::dock::{DockingRequest, DockingTask, write_docking};
 
 /// `trundle dock MAP.yaml --from --to`, `trundle dock SCANS.log --to`, `trundle dock PROBLEM.txt`, or a built-in problem by name.
 pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
@@ -24,8 +24,10 @@ pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
     let seconds = clock.elapsed().as_secs_f64();
     let place = write_docking(&task, &result, seconds, folder)?;
     if !args.common.quiet && result.refusal().is_none() {
-        print(&result, seconds);
-        console::print(&format!("See {}", place.join("dock.png").display()));
+        let (rows, closing) = result.report(seconds);
+        console::print_table(&rows);
+        console::print(&closing);
+        console::print_see(&place.join("dock.png"));
     }
     match result.refusal() {
         Some(refusal) => Ok(Outcome::unless(Some(format!("{}: {refusal}", args.place.display())))),
@@ -37,15 +39,9 @@ pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
 fn write_problem(args: &DockArgs, task: &DockingTask, file: &Path) -> Result<Outcome, AppError> {
     output_args::write_file(file, task.to_text().as_bytes())?;
     if !args.common.quiet {
-        console::print(&format!("See {}", file.display()));
+        console::print_see(file);
     }
     Ok(Outcome::Reached)
-}
-
-fn print(result: &DockingResult, seconds: f64) {
-    let (rows, closing) = result.report(seconds);
-    console::print_table(&rows);
-    console::print(&closing);
 }
 
 impl DockArgs {

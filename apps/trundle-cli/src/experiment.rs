@@ -15,7 +15,7 @@ use trundle::app::operator::OperatorLink;
 use trundle::app::{AppError, stop};
 use trundle::experiments::{
     ExperimentContext, ExperimentDisplay, ExperimentReport, KeptRuns, RunOrigin, RunsRequest, barn, corridor,
-    docking_station, fault_scenarios, look_alikes, missions, mrpb, people, poses, real_time,
+    docking_station, fault_scenarios, known_map, look_alikes, missions, mrpb, people, poses, real_time,
 };
 use trundle::io::OutputFolder;
 use trundle::live::LivePage;
@@ -46,6 +46,7 @@ fn run_from(which: &Experiment, origin: &RunOrigin) -> Result<Outcome, AppError>
         Experiment::DockingStation(args) => runs(args, "docking-station", origin, docking_station::run),
         Experiment::Barn(args) => run_barn(args, origin),
         Experiment::Mrpb(args) => run_mrpb(args, origin),
+        Experiment::KnownMap(args) => run_known_map(args, origin),
         Experiment::RealTime(args) => run_real_time(args, origin),
         Experiment::Corridor(a) => in_folder(&a.out, &a.common, None, origin, |_, _| corridor::run()),
         Experiment::Merge(_) => {
@@ -68,25 +69,24 @@ fn runs<R: ExperimentReport>(
 }
 
 fn run_barn(args: &BarnArgs, origin: &RunOrigin) -> Result<Outcome, AppError> {
-    let request = barn::BarnRequest {
-        data: args.data.clone(),
-        worlds: args.worlds,
-        seeds: args.series.seeds,
-        robot: origin.robot(|| args.series.robot.robot_if_given())?,
-    };
+    let robot = origin.robot(|| args.series.robot.robot_if_given())?;
+    let request = barn::BarnRequest::new(args.data.clone(), args.worlds, args.series.seeds, robot);
     let page = args.series.live.of_experiment("barn", &request.robot())?;
     in_folder(&args.out, &args.series.common, page, origin, |_, context| barn::run(&request, context))
 }
 
 fn run_mrpb(args: &MrpbArgs, origin: &RunOrigin) -> Result<Outcome, AppError> {
-    let request = mrpb::MrpbRequest {
-        data: args.data.clone(),
-        only: args.only.clone(),
-        seeds: args.series.seeds,
-        robot: origin.robot(|| args.series.robot.robot_if_given())?,
-    };
+    let robot = origin.robot(|| args.series.robot.robot_if_given())?;
+    let request = mrpb::MrpbRequest::new(args.data.clone(), args.only.clone(), args.series.seeds, robot);
     let page = args.series.live.of_experiment("mrpb", &request.robot())?;
     in_folder(&args.out, &args.series.common, page, origin, |_, context| mrpb::run(&request, context))
+}
+
+fn run_known_map(args: &RunsArgs, origin: &RunOrigin) -> Result<Outcome, AppError> {
+    let robot = origin.robot(|| args.series.robot.robot_if_given())?;
+    let request = known_map::KnownMapRequest::new(args.series.seeds, args.only.clone(), robot);
+    let page = args.series.live.of_experiment("known-map", &request.robot())?;
+    in_folder(&args.out, &args.series.common, page, origin, |_, context| known_map::run(&request, context))
 }
 
 fn run_real_time(args: &RealTimeArgs, origin: &RunOrigin) -> Result<Outcome, AppError> {
@@ -124,7 +124,8 @@ fn in_folder<R: ExperimentReport>(
         let table = report.table();
         console::print_table(&table);
         let gap = if table.is_empty() { "" } else { "\n" };
-        console::print(&format!("{gap}{}\nSee {}", report.verdict(), place.join("report.html").display()));
+        console::print(&format!("{gap}{}", report.verdict()));
+        console::print_see(&place.join("report.html"));
     }
     let dead = context.runs.dead();
     dead.iter().for_each(console::print_error);

@@ -55,7 +55,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let started = stop::survive_file_limits().and_then(|()| trundle::app::start_log(cli.verbose));
     match started.and_then(|()| output_args::check(&matches)) {
         Ok(folders) => {
-            let result = listen(&cli.command).and_then(|()| run_command(cli));
+            let threads = common_args::threads(&matches);
+            let result = listen(&cli.command).and_then(|()| on_threads(threads, || run_command(cli.command)));
             wait_for_abandonment();
             outcome::end(result, &folders)
         }
@@ -67,20 +68,24 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 fn listen(command: &Command) -> Result<(), AppError> {
     use Command::{Calibrate, Convert, Demo, Experiment, GuardBase, Map, Replay, Run, Sim, Slam};
     match command {
+        Map(args) if args.tool.is_some() => stop::end_at_once(end_at_once),
         Calibrate(_) | Convert(_) | Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_)
         | Experiment(_) => stop::listen(end_unfinished),
         // A guard must outlive its program.
         GuardBase => stop::ignore(),
         #[cfg(feature = "ros2")]
         Command::Ros2(_) => stop::listen(end_unfinished),
-        _ => stop::end_at_once(|signal| {
-            let is_ending = abandon_outputs();
-            if is_ending {
-                console::print_stopped(signal.name(), &format!("; {}", trundle::app::written_text()));
-            }
-            is_ending
-        }),
+        _ => stop::end_at_once(end_at_once),
     }
+}
+
+/// Handles the first signal of a command without long loops. Returns whether the program ends.
+fn end_at_once(signal: stop::StopSignal) -> bool {
+    let is_ending = abandon_outputs();
+    if is_ending {
+        console::print_stopped(signal.name(), &format!("; {}", trundle::app::written_text()));
+    }
+    is_ending
 }
 
 /// Handles a second signal: completes results that are being moved to their place, and removes others.
@@ -97,25 +102,23 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
     command.mut_args(takes_numbers).mut_subcommands(with_negative_numbers)
 }
 
-fn run_command(cli: Cli) -> Result<Outcome, AppError> {
-    match cli.command {
-        Command::Demo(args) => on_threads(args.common.threads, || demo::run(&args)),
-        Command::Run(args) => on_threads(args.options.common.threads, || run::run(&args)),
+fn run_command(command: Command) -> Result<Outcome, AppError> {
+    match command {
+        Command::Demo(args) => demo::run(&args),
+        Command::Run(args) => run::run(&args),
         #[cfg(feature = "ros2")]
-        Command::Ros2(args) => on_threads(args.options.common.threads, || ros2::run(&args)),
-        Command::Replay(args) => on_threads(args.common.threads, || replay::run(&args)),
-        Command::Slam(args) => on_threads(args.common.threads, || slam::run(&args)),
-        Command::Convert(args) => on_threads(args.common.threads, || convert::run(&args)),
-        Command::Map(args) => on_threads(args.common.threads, || map::run(&args)),
-        Command::Calibrate(args) => on_threads(args.common().threads, || calibrate::run(&args)),
-        Command::Eval(args) => on_threads(args.common().threads, || eval::run(&args)),
-        Command::Plan(args) => on_threads(args.common.threads, || plan::run(&args)),
-        Command::Sim(args) => on_threads(args.common.threads, || sim::run(&args)),
-        Command::Dock(args) => on_threads(args.common.threads, || dock::run(&args)),
-        Command::Experiment(args) => on_threads(args.common().threads, || experiment::run(&args)),
-        Command::Vocabulary(args) => {
-            on_threads(args.common().and_then(|common| common.threads), || vocabulary::run(&args))
-        }
+        Command::Ros2(args) => ros2::run(&args),
+        Command::Replay(args) => replay::run(&args),
+        Command::Slam(args) => slam::run(&args),
+        Command::Convert(args) => convert::run(&args),
+        Command::Map(args) => map::run(&args),
+        Command::Calibrate(args) => calibrate::run(&args),
+        Command::Eval(args) => eval::run(&args),
+        Command::Plan(args) => plan::run(&args),
+        Command::Sim(args) => sim::run(&args),
+        Command::Dock(args) => dock::run(&args),
+        Command::Experiment(args) => experiment::run(&args),
+        Command::Vocabulary(args) => vocabulary::run(&args),
         Command::Config(args) => robot_file::print(&args),
         Command::Doctor(args) => Ok(doctor::run(&args)),
         Command::Devices(args) => Ok(devices::run(&args)),

@@ -3,7 +3,7 @@
 use crate::console;
 use clap::Args;
 use std::path::{Path, PathBuf};
-use trundle::app::operator::{FrontEnd, MapFolder, Operator, OperatorLink, operator_link};
+use trundle::app::operator::{FrontEnd, MapFolder, Operator, OperatorLink, operator_link, refuse_for_replay};
 use trundle::app::{AppError, Progress, RunSetup};
 use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
 use trundle::runtime::RobotConfig;
@@ -23,7 +23,7 @@ pub struct LiveArgs {
     #[arg(long, value_name = "FILE", requires = "live")]
     pub live_tokens: Option<PathBuf>,
     /// Maps that the live page may load while the robot runs: each NAME.yaml of DIR.
-    #[arg(long, value_name = "DIR", requires = "live", value_parser = map_folder)]
+    #[arg(long, value_name = "DIR", requires = "live", value_parser = MapFolder::checked)]
     pub maps: Option<PathBuf>,
     /// Home and fleet.
     #[cfg(feature = "mqtt")]
@@ -63,13 +63,8 @@ impl LiveArgs {
         link: Option<OperatorLink>,
         is_steered: bool,
     ) -> Result<(FrontEnds, FrontEnd), AppError> {
-        if let (Some(file), false) = (&self.zones, is_steered) {
-            let problem = "a replay has the zones of its recording: leave --zones out";
-            return Err(AppError::Input(format!("--zones {}: {problem}", file.display())));
-        }
-        if let (Some(folder), false) = (&self.maps, is_steered) {
-            let problem = "a replay loads no other map: leave --maps out";
-            return Err(AppError::Input(format!("--maps {}: {problem}", folder.display())));
+        if !is_steered {
+            refuse_for_replay(self.zones.as_deref(), self.maps.as_deref())?;
         }
         if !self.is_operated() {
             return Ok((FrontEnds::default(), FrontEnd { progress, operator: link }));
@@ -93,16 +88,9 @@ impl LiveArgs {
         let maps = self.maps.clone().map(|folder| MapFolder::open(folder, setup.robot.clone()));
         let maps = maps.transpose().map_err(|problem| AppError::Input(format!("--maps {problem}")))?;
         let tokens = tokens(self.live_tokens.as_deref())?;
-        let options = LiveOptions { address, tokens, is_steered, maps };
+        let options = LiveOptions::new(address, tokens, is_steered, maps);
         start_page(options, link.operator(), RunFacts::of(setup)?).map(Some)
     }
-}
-
-/// A folder of maps; refused at the start if unreadable.
-fn map_folder(text: &str) -> Result<PathBuf, String> {
-    let folder = PathBuf::from(text);
-    MapFolder::check(&folder)?;
-    Ok(folder)
 }
 
 /// The tokens of a file, or new ones.
@@ -138,7 +126,7 @@ impl ViewArgs {
         let Some(address) = self.live else { return Ok(None) };
         let (operator, link) = operator_link();
         let tokens = tokens(self.live_tokens.as_deref())?;
-        let options = LiveOptions { address, tokens, is_steered, maps: None };
+        let options = LiveOptions::new(address, tokens, is_steered, None);
         Ok(Some((start_page(options, operator, facts()?)?, link)))
     }
 

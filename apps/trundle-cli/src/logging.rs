@@ -11,8 +11,5 @@ use trundle::io::OutputFolder;
 /// Those of [`OutputFolder::create`].
 pub fn output_folder(target: &Path) -> Result<OutputFolder, AppError> {
     let folder = OutputFolder::create_apart_from(output_args::inputs(), target)?;
-    for swept in folder.swept() {
-        tracing::warn!("{} was left by a run that was killed; it is removed", swept.display());
-    }
     Ok(folder.closing_with("log.txt", log_lines))
 }

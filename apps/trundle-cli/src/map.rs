@@ -1,6 +1,7 @@
-//! `trundle map`: the map of a laser log, a ROS 2 bag, a recording or an RGB-D folder.
+//! `trundle map`: the map of a laser log, a ROS 2 bag, a recording or an RGB-D folder, and the tools for finished maps.
 
 mod laser_args;
+mod tools;
 
 use crate::common_args::{BagTopicsArgs, Common, NumberArg, choice};
 use crate::console;
@@ -11,39 +12,54 @@ use clap::Args;
 use laser_args::LaserArgs;
 use std::fmt::Display;
 use std::path::PathBuf;
+use tools::MapTool;
 use trundle::app::AppError;
 use trundle::app::laser_map::{LaserMapRequest, map_log, map_rows, read_log};
-use trundle::io::{LaserLogOptions, MapImage};
+use trundle::io::MapImage;
 
 /// `trundle map`
 #[derive(Debug, Args)]
 #[command(
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
     after_help = "Example: trundle map ../shared/data/laser/sena.log --laser-x 0.78 --out out/sena\n\n\
-    Writes trajectory.txt (t x y theta: s, m, m, rad), map.pgm, map.yaml, filter.map (to go on with by --map), overview.png and\n\
+    Writes trajectory.txt (t x y theta: s, m, m, rad), map.pgm, map.yaml, filter.map (--map extends it), overview.png and\n\
     summary.json."
 )]
 pub struct MapArgs {
+    /// Work on finished maps.
+    #[command(subcommand)]
+    pub tool: Option<MapTool>,
+    /// A log to be mapped.
+    #[command(flatten)]
+    pub log: MapLogArgs,
+}
+
+/// `trundle map LOG`
+#[derive(Debug, Args)]
+pub struct MapLogArgs {
     /// A CARMEN log (or .log.gz), a ROS 2 bag (folder, .mcap, .mcap.zst, .db3), a recording of trundle or a TUM RGB-D folder. Its odometry
     /// gives the motion.
-    pub log: PathBuf,
+    #[arg(required = true)]
+    pub log: Option<PathBuf>,
     /// Read a recording of trundle that is cut, as by a power failure, up to the cut. A bag is always read up to its cut.
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     pub recover: bool,
     /// Motion of RGB-D images: the camera's trajectory from `trundle slam`, or another in TUM format. In a new map each pose is accepted
     /// with 1 cm and 0.003 rad (one sigma), and no loops are searched.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, hide_short_help = true, value_name = "FILE")]
     pub poses: Option<PathBuf>,
     /// The --poses drift, as those of visual odometry without loop closure: only their steps are used, and loops are searched.
-    #[arg(long, requires = "poses")]
+    #[arg(long, hide_short_help = true, requires = "poses")]
     pub poses_drift: bool,
     /// Number of particles of the filter.
-    #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, hide_short_help = true, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub particles: u16,
     /// Format of the map's picture.
-    #[arg(long, value_name = "FORMAT", default_value = "pgm", value_parser = choice(&MapImage::CHOICES))]
+    #[arg(long, hide_short_help = true, value_name = "FORMAT", default_value = "pgm", value_parser = choice(&MapImage::CHOICES))]
     pub map_image: MapImage,
     /// Seed of the filter.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, hide_short_help = true, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Side of a cell, m.
     #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
@@ -55,7 +71,7 @@ pub struct MapArgs {
     #[command(flatten)]
     pub topics: BagTopicsArgs,
     /// Treat all beams of a scan as measured at its stamp, even if the log has the time of each.
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     pub no_deskew: bool,
     /// Continue the map of an earlier run, its filter.map, after localization of the robot in it.
     #[arg(long, value_name = "FILE")]
@@ -71,8 +87,12 @@ pub struct MapArgs {
     pub common: Common,
 }
 
-/// `trundle map LOG`.
+/// `trundle map LOG`, or a tool.
 pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
+    args.tool.as_ref().map_or_else(|| map(&args.log), tools::run)
+}
+
+fn map(args: &MapLogArgs) -> Result<Outcome, AppError> {
     let request = args.request();
     request.refuse_wrong_options(args.laser.first_given())?;
     let display = console::StepDisplay::new(args.common.quiet);
@@ -81,21 +101,18 @@ pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
     let run = map_log(&request, args.localise, &input, &folder, &display)?;
     let place = folder.commit()?;
     // Warnings: skipped entries, impossible ranges, another mount of the laser.
-    let warn = |problem: &dyn Display| console::warn(&format!("{}: {problem}", args.log.display()));
+    let warn = |problem: &dyn Display| console::warn(&format!("{}: {problem}", request.log.display()));
     input.log.warnings().iter().for_each(|warning| warn(&warning));
     run.mount_hint.iter().for_each(|hint| warn(hint));
     run.pause_warning().filter(|_| run.failure.is_none()).iter().for_each(|warning| warn(warning));
-    if !args.common.quiet {
-        console::print_table(&map_rows(&input.log, &run));
-        console::print(&format!("See {}", place.join("overview.png").display()));
-    }
-    Ok(Outcome::unless(run.failure.map(|failure| format!("{}: {failure}", args.log.display()))))
+    console::print_result(args.common.quiet, &map_rows(&input.log, &run), &place.join("overview.png"));
+    Ok(Outcome::unless(run.failure.map(|failure| format!("{}: {failure}", request.log.display()))))
 }
 
-impl MapArgs {
+impl MapLogArgs {
     fn request(&self) -> LaserMapRequest {
         LaserMapRequest {
-            log: self.log.clone(),
+            log: self.log.clone().unwrap_or_default(),
             recover: self.recover,
             topics: self.topics.options(),
             poses: self.poses.clone(),
@@ -103,7 +120,7 @@ impl MapArgs {
             particles: usize::from(self.particles),
             seed: self.seed,
             resolution: self.resolution,
-            laser: LaserLogOptions { odometry_topic: self.topics.odom_topic.clone(), ..self.laser.options() },
+            laser: self.laser.options(self.topics.odom_topic.clone()),
             map: self.map.clone(),
             deskew: !self.no_deskew,
             map_image: self.map_image,

@@ -2,7 +2,7 @@
 
 use crate::console;
 use std::path::PathBuf;
-use trundle::app::exit_codes::{CODE_BAD_INPUT, CODE_INCOMPLETE, CODE_MISSED};
+use trundle::app::exit_codes::{CODE_INCOMPLETE, CODE_MISSED};
 use trundle::app::{AppError, stop};
 use trundle::io::IoError;
 
@@ -33,15 +33,12 @@ pub fn end(result: Result<Outcome, AppError>, folders: &[PathBuf]) -> u8 {
     };
     let code = match &result {
         Ok(Outcome::Reached) => 0,
-        Ok(Outcome::Missed) | Err(AppError::Stopped) => CODE_MISSED,
-        Err(AppError::Io(IoError::Incomplete { .. })) => CODE_INCOMPLETE,
-        Err(_) => CODE_BAD_INPUT,
+        Ok(Outcome::Missed) => CODE_MISSED,
+        Err(error) => {
+            error.reason().iter().for_each(|error| console::print_error(error));
+            error.exit_code()
+        }
     };
-    if let Err(error) = &result
-        && !matches!(error, AppError::Stopped)
-    {
-        console::print_error(error);
-    }
     let Some((signal, done)) = stop::ended() else { return code };
     let place = match folders {
         [folder, ..] if result.is_ok() || code == CODE_INCOMPLETE => {

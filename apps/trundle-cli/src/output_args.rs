@@ -2,69 +2,25 @@
 
 use clap::ArgMatches;
 use clap::parser::ValueSource;
-use std::ffi::OsString;
-use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use trundle::app::AppError;
-use trundle::io::{CommandOutputs, InputFiles, OutputFile};
-
-/// A path on the command line with a meaning of its own.
-macro_rules! path_arg {
-    ($(#[$doc:meta])* $name:ident) => {
-        $(#[$doc])*
-        #[derive(Debug, Clone)]
-        pub struct $name(PathBuf);
-
-        impl From<OsString> for $name {
-            fn from(text: OsString) -> Self {
-                Self(text.into())
-            }
-        }
-
-        impl Deref for $name {
-            type Target = Path;
-
-            fn deref(&self) -> &Path {
-                &self.0
-            }
-        }
-    };
-}
-
-path_arg!(
-    /// A folder for results.
-    OutputDirArg
-);
-path_arg!(
-    /// A file of results, outside of the folder for results.
-    OutputFileArg
-);
-path_arg!(
-    /// A file of results that may lie in the folder for results.
-    ResultFileArg
-);
-path_arg!(
-    /// A file that a command reads, if it is there, and replaces.
-    EditedFileArg
-);
-path_arg!(
-    /// A file that a command reads at its start and may replace by its own newer content.
-    ContinuedFileArg
-);
+pub use trundle::app::path_args::{
+    ContinuedFileArg, EditedFileArg, OutputDirArg, OutputFileArg, ResultFileArg,
+};
+use trundle::io::{CommandOutputs, InputFiles};
 
 /// The inputs of the present command.
 static INPUTS: OnceLock<InputFiles> = OnceLock::new();
 
 /// Refuses results that would replace an input, or that cannot be written at their place; returns the folders that the command writes.
 ///
-/// Inputs are all path arguments, and all texts that name a file, except those of the types above.
+/// Inputs are all path arguments, and all texts that name a file, except those of the types of results.
 ///
 /// # Errors
 /// Names the result and the input, the conflicting files, or the folder in which no file can be made.
 pub fn check(matches: &ArgMatches) -> Result<Vec<PathBuf>, AppError> {
-    let leaf = std::iter::successors(Some(matches), |matches| Some(matches.subcommand()?.1)).last();
-    let leaf = leaf.unwrap_or(matches);
+    let leaf = leaf(matches);
     let texts = values::<String>(leaf).map(PathBuf::from).filter(|path| path.is_file());
     let inputs = InputFiles::new(values::<PathBuf>(leaf).chain(texts));
     let is_given = |id: &clap::Id| leaf.value_source(id.as_str()) == Some(ValueSource::CommandLine);
@@ -78,6 +34,11 @@ pub fn check(matches: &ArgMatches) -> Result<Vec<PathBuf>, AppError> {
     };
     outputs.check(INPUTS.get_or_init(|| inputs))?;
     Ok(outputs.folders)
+}
+
+/// The arguments of the innermost subcommand.
+pub fn leaf(matches: &ArgMatches) -> &ArgMatches {
+    matches.subcommand().map_or(matches, |(_, below)| leaf(below))
 }
 
 /// All values of this type.
@@ -99,12 +60,18 @@ pub fn inputs() -> &'static InputFiles {
     INPUTS.get_or_init(InputFiles::default)
 }
 
+/// Writes files of results.
+///
+/// # Errors
+/// Those of [`trundle::app::write_files`].
+pub fn write_files(files: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) -> Result<(), AppError> {
+    Ok(trundle::app::write_files(inputs(), files)?)
+}
+
 /// Writes a single file of results.
 ///
 /// # Errors
 /// When the file cannot be written, or is an input.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), AppError> {
-    OutputFile::create_apart_from(inputs(), path)?.write(bytes)?;
-    trundle::app::note_written(path);
-    Ok(())
+    write_files([(path.to_owned(), bytes.to_vec())])
 }

@@ -7,14 +7,13 @@ pub use args::PlanArgs;
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
-use args::PlaceArg;
 use trundle::app::AppError;
 use trundle::app::plan::{
-    GoalRefusal, NamedPose, OffMap, PlanFiles, PlanRequest, PlanTimes, curve_lines, plan_rows, write_plan,
-    write_refusal,
+    GoalRefusal, NamedPose, OffMap, PlaceArg, PlanFiles, PlanRequest, PlanTimes, curve_lines, plan_rows,
+    write_plan, write_refusal,
 };
 use trundle::core::DriveLimits;
-use trundle::io::{OutputFolder, read_places};
+use trundle::io::OutputFolder;
 use trundle::planning::MultiGoalPlan;
 
 /// `trundle plan MAP.yaml --from --goal`.
@@ -50,9 +49,8 @@ fn report_plan(
     }
     if !args.common.quiet {
         moved.iter().for_each(|moved| console::print(&moved.note()));
-        console::print_table(&plan_rows(plan, times));
-        console::print(&format!("See {}", place.join("plan.html").display()));
     }
+    console::print_result(args.common.quiet, &plan_rows(plan, times), &place.join("plan.html"));
     Ok(Outcome::Reached)
 }
 
@@ -80,11 +78,8 @@ impl PlanArgs {
 
     /// Start and goals, named places looked up in the file of places.
     fn ends(&self) -> Result<(NamedPose, Vec<NamedPose>), AppError> {
-        let places = self.places.as_deref().map(read_places).transpose()?;
-        let look_up = |place: &PlaceArg| match place {
-            PlaceArg::Pose(pose) => Ok(NamedPose { pose: pose.0, name: None }),
-            PlaceArg::Name(name) => NamedPose::of_place(name, self.places.as_deref(), places.as_ref()),
-        };
-        Ok((look_up(&self.from)?, self.goal.iter().map(look_up).collect::<Result<_, _>>()?))
+        let all = std::iter::once(&self.from).chain(&self.goal);
+        let mut poses = PlaceArg::poses(all, self.places.as_deref())?;
+        Ok((poses.remove(0), poses))
     }
 }

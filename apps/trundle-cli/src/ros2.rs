@@ -11,7 +11,6 @@ use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
 use trundle::app::{AppError, RunLog, stop};
 use trundle::ros2::Ros2Robot;
-use trundle::ros2::body::BodySettings;
 use trundle::runtime::Mission;
 
 /// `trundle ros2`.
@@ -20,12 +19,10 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     let options = args.ros.options()?;
     let request = args.request();
     let mission = if request.is_empty() { Mission::default() } else { request.mission()? };
-    let settings = BodySettings {
-        use_sim_time: options.use_sim_time,
-        stamped_commands: options.stamped_commands,
-        base_frame: options.frames.base.clone(),
-        ..args.topics()
-    };
+    let mut settings = args.topics();
+    settings.use_sim_time = options.use_sim_time;
+    settings.stamped_commands = options.stamped_commands;
+    settings.base_frame = options.frames.base.clone();
     let wait = Duration::from_secs_f64(args.wait);
     let is_cancelled = || stop::is_requested(|| "the wait for topics".to_owned());
     let connected = Ros2Robot::connect(&options, settings, &mut robot, wait, is_cancelled)?;

@@ -12,7 +12,6 @@ use crate::{console, logging, run_output};
 use std::time::Instant;
 use trundle::app::hardware::{OpenCamera, start_hardware};
 use trundle::app::real_time::run_in_real_time;
-use trundle::app::report::mission_text;
 use trundle::app::{AppError, RUN_COMMAND, RunLog, RunSetup, read_checkpoint};
 use trundle::io::keep_aside;
 
@@ -27,9 +26,9 @@ pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
         Some((checkpoint, _)) => checkpoint.mission.left.clone(),
         None => args.mission.request().mission()?,
     };
-    let camera = OpenCamera::open(&args.camera)?;
+    let camera = OpenCamera::open_with(&args.camera, args.gyro, &robot.mount)?;
     camera.require_live()?;
-    robot.camera = camera.intrinsics(args.robot_camera(&robot).as_ref())?;
+    robot.camera = camera.intrinsics(args.intrinsics, &robot.camera)?;
     let mut setup = args.options.setup(RUN_COMMAND, &args.base.to_string(), mission, robot)?;
     setup.is_operated = args.live.is_operated();
     #[cfg(feature = "ros2")]
@@ -48,9 +47,8 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
     let folder = logging::output_folder(&args.out)?;
     if !args.options.common.quiet {
         let info = camera.info();
-        let (name, rate_hz, mission) = (&info.name, info.color.rate_hz, mission_text(&setup.mission));
-        console::print(&format!("Base {}, camera {} ({name}): {mission}.", args.base, args.camera));
-        console::print(&setup.recording.announcement(&setup.robot.camera, rate_hz, setup.time_limit));
+        let devices = format!("Base {}, camera {} ({})", args.base, args.camera, info.name);
+        console::print(&setup.announcement(&devices, info.color.rate_hz));
     }
     let checkpoint = args.options.checkpoint.as_deref();
     let (line, progress) = console::progress(args.options.common.quiet);

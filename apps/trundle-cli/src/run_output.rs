@@ -24,10 +24,7 @@ pub fn write(
             console::print_table(&timing.rows());
         }
         console::print(&format!("\n{}", numbers.verdict()));
-        let report = output.folder.join("report.html");
-        if report.exists() {
-            console::print(&format!("See {}", report.display()));
-        }
+        console::print_see(&output.folder.join("report.html"));
     }
     match output.incomplete {
         Some(error) => Err(error),

@@ -6,19 +6,19 @@ mod ros2;
 #[cfg(unix)]
 mod serve;
 
+use args::DriverArgs;
 pub use args::SimArgs;
 
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
-use crate::output_args::write_file;
+use crate::output_args::write_files;
 use std::path::Path;
 use trundle::app::AppError;
 use trundle::core::OccupancyGrid;
 use trundle::experiments::sim_drive::{
-    DriveRecording, KeyDriver, LiveDrive, ScriptDriver, SimDrive, SimDriver, StillDriver, WaypointDriver,
-    drive_rows, drive_simulator, drive_summary, drive_verdict, recording_announcement, recording_hint,
-    true_map,
+    DriveRecording, KeyDriver, LiveDrive, SimDrive, SimDriver, StillDriver, chosen_driver, drive_rows,
+    drive_simulator, drive_summary, drive_verdict, recording_announcement, recording_hint, true_map,
 };
 use trundle::experiments::simulated::{list_scenes, load_simulator};
 use trundle::io::{OutputFolder, map_files};
@@ -44,7 +44,9 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
         Some(&[low, high]) => HeightBand::new(low, high)?,
         _ => HeightBand::new(config.kobuki.step_over, config.kobuki.height)?,
     };
-    let driver = driver(args)?;
+    let DriverArgs { drive: script, follow, keys, duration } = &args.driver;
+    let driver =
+        chosen_driver((script.as_deref(), follow.as_deref()), *keys, args.is_driven_by_page(), *duration)?;
     let folder = args.record.as_deref().map(logging::output_folder).transpose()?;
     let mut robot = load_simulator(name, args.place.options(), config)?;
     let grid =
@@ -59,20 +61,6 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
         print(&drive, place.as_deref(), &robot);
     }
     Ok(if drive.is_complete { Outcome::Reached } else { Outcome::Missed })
-}
-
-/// The driver of the arguments; `None` for a person at the keys or the page, who starts once the robot exists.
-fn driver(args: &SimArgs) -> Result<Option<Box<dyn SimDriver>>, AppError> {
-    Ok(match (&args.driver.drive, &args.driver.follow) {
-        (Some(file), _) => Some(Box::new(ScriptDriver::read(file)?)),
-        (None, Some(file)) => Some(Box::new(WaypointDriver::read(file)?)),
-        (None, None) if args.driver.keys => {
-            KeyDriver::require_terminal()?;
-            None
-        }
-        (None, None) if args.is_driven_by_page() => None,
-        (None, None) => Some(Box::new(StillDriver::new(args.driver.duration))),
-    })
 }
 
 fn drive(
@@ -114,8 +102,7 @@ fn drive(
 /// Writes the files of `--map`, if given.
 fn write_true_map(args: &SimArgs, grid: Option<&OccupancyGrid>) -> Result<(), AppError> {
     let (Some(file), Some(grid)) = (&args.true_map.map, grid) else { return Ok(()) };
-    let mut files = map_files(file, grid, args.true_map.map_image)?.into_iter();
-    files.try_for_each(|(file, bytes)| write_file(&file, &bytes))
+    write_files(map_files(file, grid, args.true_map.map_image)?)
 }
 
 fn facts(args: &SimArgs, robot: &Simulator) -> RunFacts {

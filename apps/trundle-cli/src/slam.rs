@@ -30,7 +30,7 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
         console::print_table(&output.rows);
         console::print_table(&made.rows);
         run.clock_tables().iter().for_each(|table| console::print_table(table));
-        console::print(&format!("See {}", output.folder.join("report.html").display()));
+        console::print_see(&output.folder.join("report.html"));
     }
     output.incomplete.map_or(Ok(Outcome::unless(output.failure)), Err)
 }

@@ -31,7 +31,7 @@ fn train(args: &TrainArgs) -> Result<(), AppError> {
     let training = VocabularyTraining {
         sources: args.sources.sources(),
         descriptors: args.descriptors.clone(),
-        config: VocabularyConfig { branching: args.branching, depth: args.depth, ..Default::default() },
+        config: VocabularyConfig::of_tree(args.branching, args.depth),
         seed: args.seed,
     };
     let clock = Instant::now();
@@ -39,7 +39,8 @@ fn train(args: &TrainArgs) -> Result<(), AppError> {
     let seconds = clock.elapsed().as_secs_f64();
     write_file(&args.out, &trained.vocabulary.to_bytes())?;
     if !args.common.quiet {
-        console::print(&format!("{trained}, in {seconds:.1} s\nSee {}", args.out.display()));
+        console::print(&format!("{trained}, in {seconds:.1} s"));
+        console::print_see(&args.out);
     }
     Ok(())
 }

@@ -24,7 +24,7 @@ from standing_robot import StandingRobot
 # Beginnings of the names of threads that carry messages of ROS 2: of trundle, and of the DDS library.
 BRIDGE_THREADS = ("ros2", "RustDDS", "cmd-vel", "dds")
 # Largest share of messages that may get no answer (ours; a loaded machine delays some beyond the end).
-MOST_LOST = 0.2
+MAX_LOST_SHARE = 0.2
 
 
 class Player(StandingRobot):
@@ -112,10 +112,10 @@ def main():
             lines[-1] |= images_of_run(out)
         print(json.dumps(lines[-1]), flush=True)
         checks.check(f"{name} answers pairs and odometry", all(lines[-1][k]["answered"] for k in ("odom_to_cmd_vel", "pair_to_answer")))
-        checks.within(f"{name}: share of odometry without an answer", lines[-1]["odom_to_cmd_vel"]["lost"], MOST_LOST)
+        checks.within(f"{name}: share of odometry without an answer", lines[-1]["odom_to_cmd_vel"]["lost"], MAX_LOST_SHARE)
     sent = lines[-1]["pair_to_answer"]["sent"]
     received = lines[-1]["received"]
-    checks.check("trundle receives the pairs", received >= (1 - MOST_LOST) * sent, f"{received}, sent {sent} and some before")
+    checks.check("trundle receives the pairs", received >= (1 - MAX_LOST_SHARE) * sent, f"{received}, sent {sent} and some before")
     for line in lines:
         for kind, what in (("odom_to_cmd_vel", "odometry to command"), ("pair_to_answer", "image pair to answer")):
             print(f"{line['peer']}, {what}, median: {line[kind].get('median_ms', math.nan)} ms; 95 %: {line[kind].get('p95_ms', math.nan)} ms; "

@@ -22,7 +22,7 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image  # noqa: E402
 # Receive buffer that the profile asks for, bytes.
 BUFFER_BYTES = 4_194_304
 # Smallest share of the images that has to arrive (ours).
-LEAST_SHARE = 0.8
+MIN_SHARE = 0.8
 # Best effort, and no message is lost in the reader where this program is slow.
 QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
 
@@ -56,7 +56,7 @@ def main():
         arrived = listener.kept.get(topic, [])
         size = sum(len(m.data) for m in arrived) / max(1, len(arrived)) / 1000
         detail = f"{len(arrived)} of {sent}, {size:.0f} kB each"
-        checks.check(f"{topic} arrives", options.default_buffer or len(arrived) >= LEAST_SHARE * sent - 1, detail)
+        checks.check(f"{topic} arrives", options.default_buffer or len(arrived) >= MIN_SHARE * sent - 1, detail)
     return checks.report()
 
 

@@ -1,10 +1,12 @@
-//! Conversion of RGB-D images with their poses: ROS bag, TUM folder or recording into a TUM folder or a ROS 2 bag.
+//! Conversion of RGB-D images with their poses: ROS bag, TUM folder or recording into another of these forms.
 
-use crate::sequence_input::{PendingFrame, SequenceInput};
+use crate::sequence::SequenceRequest;
+use crate::sequence_input::{PendingFrame, SequenceInput, SequenceOptions};
+use crate::sequence_run::{SequenceEvents, sequence_setup};
 use crate::{AppError, StepProgress, stop};
 use trundle_core::{FrameId, Pose3, RgbdImage, Stamp};
 use trundle_io::ros_message::RosMessage;
-use trundle_io::{EncodedRgbd, OutputFolder, Recorder, TumFrame, TumWriter, ros_message};
+use trundle_io::{EncodedEvent, EncodedRgbd, OutputFolder, Recorder, TumFrame, TumWriter, ros_message};
 
 /// The form that a sequence is converted into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,6 +15,8 @@ pub enum SequenceForm {
     TumFolder,
     /// `bag.mcap`: a ROS 2 bag with colour as JPEG, depth in whole millimetres, camera_info, transforms, odometry and ground truth.
     RosBag,
+    /// `recording.mcap`: a recording of trundle with images, odometry and ground truth, which `trundle replay` runs.
+    Recording,
 }
 
 impl std::str::FromStr for SequenceForm {
@@ -22,7 +26,8 @@ impl std::str::FromStr for SequenceForm {
         match name {
             "tum" => Ok(Self::TumFolder),
             "bag" => Ok(Self::RosBag),
-            _ => Err("expected tum or bag".to_owned()),
+            "recording" => Ok(Self::Recording),
+            _ => Err("expected tum, bag or recording".to_owned()),
         }
     }
 }
@@ -44,8 +49,22 @@ impl std::fmt::Display for Converted {
 
 /// Name of the file of a ROS 2 bag in its folder.
 const BAG_FILE: &str = "bag.mcap";
+/// Name of a recording in its folder.
+const RECORDING_FILE: &str = "recording.mcap";
 /// Rate of the images if the input gives no rate \[Hz\]; the rate of the simulated camera. Source: ours.
 const DEFAULT_RATE_HZ: f64 = 15.0;
+
+/// Opens a sequence for its conversion into `form`. A recording needs the camera's mount, which the floor in the images shows where the
+/// input has none.
+///
+/// # Errors
+/// As [`SequenceInput::open`].
+pub fn open_for(options: &SequenceOptions<'_>, form: SequenceForm) -> Result<SequenceInput, AppError> {
+    match form {
+        SequenceForm::Recording => SequenceRequest::of_options(options, None).open(),
+        SequenceForm::TumFolder | SequenceForm::RosBag => SequenceInput::open(options),
+    }
+}
 
 /// Writes the images of `input`, its odometry and its ground truth into `folder`. A damaged image is left out with a warning.
 ///
@@ -60,6 +79,7 @@ pub fn convert_sequence(
     match form {
         SequenceForm::TumFolder => to_tum(input, folder, progress),
         SequenceForm::RosBag => to_bag(input, folder, progress),
+        SequenceForm::Recording => to_recording(input, folder, progress),
     }
 }
 
@@ -118,6 +138,39 @@ fn to_bag(
     Ok(converted)
 }
 
+fn to_recording(
+    input: &SequenceInput,
+    folder: &OutputFolder,
+    progress: &dyn StepProgress,
+) -> Result<Converted, AppError> {
+    if input.is_recording() {
+        let problem =
+            "this is a recording of trundle already, expected a ROS 2 bag or a TUM folder for --to recording";
+        return Err(AppError::Input(format!("{}: {problem}", input.path.display())));
+    }
+    let mut events = SequenceEvents::of(input)?.peekable();
+    let mut recording = folder.recorder(RECORDING_FILE)?;
+    recording.set_camera(input.camera.model.camera);
+    let begin = events.peek().and_then(|event| event.as_ref().ok()).map(EncodedEvent::stamp);
+    recording.record_json("/config", "trundle.Config", begin.unwrap_or_default(), &sequence_setup(input))?;
+    progress.begin(Some(input.len()));
+    let mut images = 0;
+    for event in events.by_ref() {
+        let event = event?;
+        recording.record_event(&event)?;
+        if matches!(event, EncodedEvent::Rgbd(_)) {
+            images += 1;
+            progress.advance();
+            if stop::is_requested(|| format!("{images} of {} images", input.len())) {
+                return Err(AppError::Stopped);
+            }
+        }
+    }
+    progress.end();
+    recording.finish()?;
+    finished(input, Converted { images, skipped: input.len() - images })
+}
+
 /// Odometry and ground truth as messages with their topics, in the order of their stamps.
 fn poses(input: &SequenceInput, base: &str, camera: &str) -> Vec<(Stamp, &'static str, RosMessage)> {
     let (odom, world) = (FrameId::Odom.to_string(), FrameId::World.to_string());
@@ -159,6 +212,10 @@ fn each_image(
         progress.advance();
     }
     progress.end();
+    finished(input, converted)
+}
+
+fn finished(input: &SequenceInput, converted: Converted) -> Result<Converted, AppError> {
     if converted.images == 0 {
         return Err(AppError::Input(format!("{}: no image can be used", input.path.display())));
     }

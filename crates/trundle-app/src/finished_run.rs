@@ -19,6 +19,8 @@ pub struct FinishedRun {
     pub seconds: f64,
     /// The cost of recording.
     pub recording: RecordingCost,
+    /// Place at which the replayed recording is cut, in a sentence; `None` for a complete recording and for a live run.
+    pub cut: Option<String>,
 }
 
 impl FinishedRun {
@@ -39,6 +41,8 @@ pub struct RecordingCost {
     pub cpu_time: Duration,
     /// The reason for an incomplete recording; `None` for a complete one.
     pub error: Option<IoError>,
+    /// Names of the incomplete files.
+    pub failed_files: Vec<String>,
     /// The reason for a missing last checkpoint; `None` if the checkpoint was written.
     pub checkpoint_error: Option<IoError>,
 }

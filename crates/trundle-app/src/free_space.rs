@@ -29,6 +29,12 @@ impl FreeSpace {
         Self { read: Box::new(read), min_free_bytes, messages: 0 }
     }
 
+    /// The free space \[bytes\]; `None` if the system does not report it.
+    #[must_use]
+    pub fn bytes(&self) -> Option<u64> {
+        (self.read)()
+    }
+
     /// Counts a message and checks the disk at intervals. Returns the reason to end the recording, in words, if too little space is free.
     pub fn shortage_at_message(&mut self) -> Option<String> {
         let is_due = self.messages.is_multiple_of(MESSAGES_BETWEEN_CHECKS);
@@ -38,7 +44,7 @@ impl FreeSpace {
 
     /// The reason to stop writing, in words, if too little space is free.
     pub fn shortage(&self) -> Option<String> {
-        let free = (self.read)().filter(|free| *free < self.min_free_bytes)?;
+        let free = self.bytes().filter(|free| *free < self.min_free_bytes)?;
         let megabytes = |bytes: u64| bytes / 1_000_000;
         let (free, min) = (megabytes(free), megabytes(self.min_free_bytes));
         Some(format!("{free} MB are free on the disk, expected {min} MB or more"))

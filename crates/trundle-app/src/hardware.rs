@@ -7,7 +7,7 @@ mod drivers;
 
 pub use check::{CheckRequest, HardwareReport, check_hardware};
 pub use device_list::{device_rows, udev_rules};
-pub use drivers::{Drivers, OpenCamera};
+pub use drivers::{Drivers, GyroOrigin, IntrinsicsSource, OpenCamera};
 
 use crate::AppError;
 use crate::real_time::{EventFeed, EventObserver, LiveBody, TimedEvent};

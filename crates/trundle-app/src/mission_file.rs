@@ -123,12 +123,12 @@ fn with_options(task: Task, options: GoalOptions) -> Result<Task, String> {
 impl TaskEntry {
     /// The settings of a goal.
     fn goal_options(&self) -> GoalOptions {
-        GoalOptions {
-            patience: self.patience_s,
-            tolerance: self.tolerance_m,
-            heading_tolerance: self.heading_tolerance_deg.map(f64::to_radians),
-            when_blocked: self.when_blocked,
-        }
+        let mut options = GoalOptions::default();
+        options.patience = self.patience_s;
+        options.tolerance = self.tolerance_m;
+        options.heading_tolerance = self.heading_tolerance_deg.map(f64::to_radians);
+        options.when_blocked = self.when_blocked;
+        options
     }
 }
 
@@ -187,10 +187,15 @@ mod tests {
             other => panic!("{other}"),
         };
         let plain = GoalOptions::default();
-        let waits = GoalOptions { patience: Some(600.0), when_blocked: Some(WhenBlocked::Wait), ..plain };
+        let mut waits = plain;
+        waits.patience = Some(600.0);
+        waits.when_blocked = Some(WhenBlocked::Wait);
         assert_eq!(options(0), waits);
         let (tolerance, heading_tolerance) = (Some(0.3), Some(90_f64.to_radians()));
-        assert_eq!(options(1), GoalOptions { tolerance, heading_tolerance, ..plain });
+        let mut near = plain;
+        near.tolerance = tolerance;
+        near.heading_tolerance = heading_tolerance;
+        assert_eq!(options(1), near);
     }
 
     #[test]

@@ -28,7 +28,7 @@ impl MissionRequest {
     /// The tasks of the file; else exploration, the goals, and the charging station or the return.
     ///
     /// # Errors
-    /// When the file cannot be read, or the mission cannot be accepted.
+    /// When the file cannot be read, or the mission is invalid.
     pub fn mission(&self) -> Result<Mission, AppError> {
         match &self.file {
             Some(file) => read_mission(file),

@@ -6,11 +6,13 @@
 mod annotation_edit;
 mod annotation_store;
 mod annotations;
+mod depth_view;
 mod image_feed;
 mod link;
 mod map_file;
 mod map_folder;
 mod perception_feed;
+mod replay_options;
 mod request;
 mod run_view;
 mod series;
@@ -18,15 +20,17 @@ mod view_feed;
 mod visual_map_feed;
 
 pub use annotation_edit::AnnotationEdit;
+pub use depth_view::{DepthPicture, DepthView};
 pub(crate) use image_feed::ImageFeed;
 pub use link::{Operator, OperatorError, OperatorLink, operator_link};
 pub use map_file::{ZONES_FILE, map_file};
 pub use map_folder::MapFolder;
 pub(crate) use perception_feed::PerceptionFeed;
+pub use replay_options::refuse_for_replay;
 pub use request::OperatorRequest;
 pub use run_view::{
-    Activity, ClosedLoop, DepthView, FeatureSpot, FeatureView, ImageView, MapView, MissionView,
-    PerceptionView, RunCounts, RunState, RunView, VisualMapView,
+    Activity, ClosedLoop, FeatureSpot, FeatureView, ImageView, MapView, MissionView, PerceptionView,
+    PlanView, RunCounts, RunState, RunView, VisualMapView,
 };
 pub use series::{EndedRun, SeriesView};
 pub use visual_map_feed::VISUAL_MAP_PERIOD_S;

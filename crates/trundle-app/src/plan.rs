@@ -7,6 +7,7 @@ mod numbers;
 mod off_map;
 mod output;
 mod picture;
+mod place_arg;
 mod plan_times;
 mod request;
 
@@ -15,5 +16,6 @@ pub use masks::SpeedMaskLimits;
 pub use numbers::{curve_lines, plan_rows};
 pub use off_map::OffMap;
 pub use output::{write_plan, write_refusal};
+pub use place_arg::PlaceArg;
 pub use plan_times::PlanTimes;
 pub use request::{NamedPose, PlanFiles, PlanRequest};

@@ -22,7 +22,8 @@ impl FromStr for PoseArg {
     }
 }
 
-fn coordinate(name: &str, text: &str, unit: &str, limit: f64) -> Result<f64, String> {
+/// A number of a text, at most `limit` in size.
+pub(crate) fn coordinate(name: &str, text: &str, unit: &str, limit: f64) -> Result<f64, String> {
     let value: f64 =
         text.trim().parse().map_err(|_| format!("{name} is '{text}', expected a number in {unit}"))?;
     if value.abs() <= limit {

@@ -9,13 +9,14 @@
 
 mod background_body;
 mod event_feed;
+mod event_order;
 mod live_body;
 mod memory_usage;
 mod pacer;
 mod report;
 mod threaded_body;
 
-pub use background_body::{BackgroundBody, BodyTiming, Lateness, TimedEvent};
+pub use background_body::{BackgroundBody, BodyTiming, EventOrderCounts, Lateness, TimedEvent};
 pub use event_feed::{EventFeed, EventObserver};
 pub use live_body::LiveBody;
 pub use memory_usage::MemoryUsage;
@@ -43,7 +44,7 @@ const RECORDER_NICENESS: i32 = 10;
 /// is recorded into `folder`.
 ///
 /// # Errors
-/// When the system refuses a thread, the body cannot be started, or the robot cannot be accepted.
+/// When the system refuses a thread, the body cannot be started, or the robot is invalid.
 pub fn run_in_real_time<B: BackgroundBody>(
     setup: &RunSetup,
     start_body: impl FnOnce(InboxSender<TimedEvent>, ThreadPlacement) -> Result<B, AppError> + Send,

@@ -1,6 +1,7 @@
 //! The recording of a run, written within the run's loop or by a separate thread.
 
-use crate::{AppError, FreeSpace, RecordingContent, checkpoint_writer::CheckpointWriter};
+use crate::recording_file::{FileRecorder, RecordingFile, first_file};
+use crate::{AppError, FreeSpace, RecordingContent, RecordingSwitch, checkpoint_writer::CheckpointWriter};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
@@ -13,19 +14,19 @@ use trundle_io::{IoError, OutputFolder, Recorder};
 use trundle_runtime::real_time::{ThreadPlacement, thread_time};
 use trundle_runtime::{Checkpoint, Histogram};
 
-/// A recording into a file.
-pub type FileRecorder = Recorder<BufWriter<File>>;
-
 type Line = Box<dyn FnOnce(&mut RecordingFile) + Send>;
 
 /// Records a run into `recording.mcap`, within the run's loop or by a separate thread. With the thread a slow disk does not delay control.
-/// Writes checkpoints as well, if their file is given.
+/// A recording that is switched on later is a further file. Writes checkpoints as well, if their file is given.
 pub struct RunRecorder {
     sink: Sink,
     /// Lines that wait for the disk, counted each time a line is written.
     pub queue_lengths: Histogram,
-    /// Lines left out because the disk could not follow; the recording ends before the first.
+    /// Lines left out because the disk could not follow; a file ends before its first.
     pub lines_lost: u64,
+    /// Whether the present file has ended because the disk could not follow.
+    is_cut: bool,
+    switch: RecordingSwitch,
     checkpoints: Option<CheckpointWriter>,
 }
 
@@ -53,20 +54,28 @@ impl RunRecorder {
     /// # Errors
     /// When the file cannot be created.
     pub fn of_content(content: RecordingContent, folder: &OutputFolder) -> Result<Self, AppError> {
-        Ok(Self::of(Sink::Inline(Box::new(RecordingFile::new(content, folder)?))))
+        let switch = RecordingSwitch::default();
+        let file = RecordingFile::new(content, folder, switch.clone())?;
+        Ok(Self::of(Sink::Inline(Box::new(file)), switch))
     }
 
     /// This recorder, whose recording ends if `space` is short; without effect for a recorder with a thread.
     #[must_use]
     pub fn watching(mut self, space: FreeSpace) -> Self {
         if let Sink::Inline(file) = &mut self.sink {
-            file.space = Some(space);
+            file.watch(space);
         }
         self
     }
 
-    fn of(sink: Sink) -> Self {
-        Self { sink, queue_lengths: Histogram::default(), lines_lost: 0, checkpoints: None }
+    fn of(sink: Sink, switch: RecordingSwitch) -> Self {
+        let queue_lengths = Histogram::default();
+        Self { sink, queue_lengths, lines_lost: 0, is_cut: false, switch, checkpoints: None }
+    }
+
+    /// The switch of the recording.
+    pub fn switch(&self) -> &RecordingSwitch {
+        &self.switch
     }
 
     /// A recording onto a device that is full, for fault scenarios.
@@ -78,8 +87,9 @@ impl RunRecorder {
         let file = File::options().write(true).open(path);
         let file = file.map_err(|error| AppError::Environment(format!("{}: {error}", path.display())))?;
         let recorder = Recorder::new(BufWriter::with_capacity(1 << 20, file), path)?;
-        let file = RecordingFile { recorder: Some(recorder), space: None, failure: None };
-        Ok(Self::of(Sink::Inline(Box::new(file))))
+        let switch = RecordingSwitch::default();
+        let file = RecordingFile::onto(recorder, switch.clone());
+        Ok(Self::of(Sink::Inline(Box::new(file)), switch))
     }
 
     /// A recording into `folder`, written by its own thread at `place`. With [`RecordingContent::None`] no data is recorded.
@@ -91,7 +101,8 @@ impl RunRecorder {
         folder: &OutputFolder,
         place: ThreadPlacement,
     ) -> Result<Self, AppError> {
-        let mut file = RecordingFile::new(content, folder)?;
+        let switch = RecordingSwitch::default();
+        let mut file = RecordingFile::new(content, folder, switch.clone())?;
         let (lines, inbox) = sync_channel::<Line>(MAX_WAITING_LINES);
         let waiting = Arc::<AtomicUsize>::default();
         let left = Arc::clone(&waiting);
@@ -106,7 +117,7 @@ impl RunRecorder {
         let thread = std::thread::Builder::new().name("recorder".to_owned()).spawn(write);
         let thread = thread
             .map_err(|error| AppError::Environment(format!("cannot start a thread to record: {error}")))?;
-        Ok(Self::of(Sink::Threaded { lines, waiting, thread }))
+        Ok(Self::of(Sink::Threaded { lines, waiting, thread }, switch))
     }
 
     /// This recorder, which also writes the robot's checkpoints into `file`, if a file is given.
@@ -131,20 +142,58 @@ impl RunRecorder {
 
     /// Writes a line. A full disk ends the recording, not the run.
     pub fn write(&mut self, line: impl FnOnce(&mut FileRecorder) -> Result<(), IoError> + Send + 'static) {
-        match &mut self.sink {
-            Sink::Inline(file) => file.write(line),
-            Sink::Threaded { .. } if self.lines_lost > 0 => {
-                self.lines_lost += 1;
-            }
-            Sink::Threaded { lines, waiting, .. } => {
-                let length = waiting.fetch_add(1, Ordering::Relaxed);
-                self.queue_lengths.note(length as f64);
-                if let Err(TrySendError::Full(_)) = lines.try_send(Box::new(move |file| file.write(line))) {
-                    waiting.fetch_sub(1, Ordering::Relaxed);
-                    self.lines_lost += 1;
-                }
-            }
+        if self.is_cut {
+            self.lines_lost += 1;
+        } else {
+            self.change(move |file| file.write(line));
         }
+    }
+
+    /// Ends the present file. The run continues.
+    pub fn end(&mut self) {
+        self.change(RecordingFile::end);
+    }
+
+    /// Begins a further file: the next lines are its first. If the disk is short of space, there is none.
+    pub fn begin_part(&mut self) {
+        self.is_cut = false;
+        self.change(RecordingFile::begin_part);
+    }
+
+    /// Reports the free space to the switch, unless the disk cannot follow.
+    pub fn report_space(&mut self) {
+        _ = self.queue(|file| file.report_space());
+    }
+
+    /// Changes the file. If the disk cannot follow, the present file is cut here.
+    fn change(&mut self, change: impl FnOnce(&mut RecordingFile) + Send + 'static) {
+        if self.queue(change) {
+            return;
+        }
+        self.lines_lost += 1;
+        self.is_cut = true;
+        self.switch.update(|state| {
+            state.is_on = false;
+            state.reason = Some("the disk could not follow".to_owned());
+        });
+    }
+
+    /// Changes the file after the lines before; returns whether the queue had space.
+    fn queue(&mut self, change: impl FnOnce(&mut RecordingFile) + Send + 'static) -> bool {
+        let (lines, waiting) = match &mut self.sink {
+            Sink::Inline(file) => {
+                change(file);
+                return true;
+            }
+            Sink::Threaded { lines, waiting, .. } => (lines, waiting),
+        };
+        let length = waiting.fetch_add(1, Ordering::Relaxed);
+        self.queue_lengths.note(length as f64);
+        let is_full = matches!(lines.try_send(Box::new(change)), Err(TrySendError::Full(_)));
+        if is_full {
+            waiting.fetch_sub(1, Ordering::Relaxed);
+        }
+        !is_full
     }
 
     /// Runs `work` in the recorder's thread, which does not delay control. Without a thread the work runs immediately; with a busy thread
@@ -179,50 +228,13 @@ impl RunRecorder {
             Sink::Threaded { lines, thread, .. } => {
                 drop(lines);
                 let died = |_| IoError::Malformed {
-                    path: "recording.mcap".into(),
+                    path: first_file().to_owned(),
                     problem: "the thread that records has died".to_owned(),
                 };
                 let (result, spent) = thread.join().map_err(died)?;
                 result?;
                 Ok(spent)
             }
-        }
-    }
-}
-
-/// The file of a recording, until it ends: with the run, or if the disk is full or short of space.
-struct RecordingFile {
-    /// `None` without a recording, and after its end.
-    recorder: Option<FileRecorder>,
-    space: Option<FreeSpace>,
-    failure: Option<IoError>,
-}
-
-impl RecordingFile {
-    fn new(content: RecordingContent, folder: &OutputFolder) -> Result<Self, AppError> {
-        if content == RecordingContent::None {
-            return Ok(Self { recorder: None, space: None, failure: None });
-        }
-        let recorder = Some(folder.recorder("recording.mcap")?);
-        Ok(Self { recorder, space: Some(FreeSpace::of(&folder.staged(""))), failure: None })
-    }
-
-    /// Writes a line, or drops it after the recording has ended: a full disk does not stop a robot.
-    fn write(&mut self, line: impl FnOnce(&mut FileRecorder) -> Result<(), IoError>) {
-        let Some(recorder) = &mut self.recorder else { return };
-        let shortage = self.space.as_mut().and_then(FreeSpace::shortage_at_message);
-        let failure = if shortage.is_none() { line(recorder).err() } else { None };
-        if let Some(why) = shortage.or_else(|| failure.as_ref().map(ToString::to_string)) {
-            tracing::warn!("{why}; the recording ends here, the robot continues");
-            let finished = self.recorder.take().map_or(Ok(()), |recorder| recorder.finish().map(drop));
-            self.failure = failure.or(finished.err());
-        }
-    }
-
-    fn finish(self) -> Result<(), IoError> {
-        match (self.failure, self.recorder) {
-            (Some(failure), _) => Err(failure),
-            (None, recorder) => recorder.map_or(Ok(()), |recorder| recorder.finish().map(drop)),
         }
     }
 }

@@ -67,8 +67,8 @@ impl RecordingContent {
         let total = rate * limit;
         let total = match total {
             _ if limit == f64::MAX => String::new(),
-            _ if total < 1.0 => format!(", less than 1 MB in {limit:.0} s"),
-            _ => format!(", at most {total:.0} MB in {limit:.0} s"),
+            _ if total < 1.0 => format!(", less than 1 MB in {limit} s"),
+            _ => format!(", at most {total:.0} MB in {limit} s"),
         };
         match self {
             Self::None => "Nothing is recorded.".to_owned(),
@@ -98,6 +98,8 @@ mod tests {
         assert!(text(RecordingContent::All).contains("MB per second"));
         let short = RecordingContent::Events.announcement(&camera, 15.0, 6.0);
         assert!(short.contains("less than 1 MB in 6 s"), "{short}");
+        let shorter = RecordingContent::Events.announcement(&camera, 15.0, 0.3);
+        assert!(shorter.contains("less than 1 MB in 0.3 s"), "{shorter}");
         let endless = RecordingContent::Events.announcement(&camera, 15.0, f64::MAX);
         assert_eq!(endless, "Records events without images, about 0.04 MB per second of the robot's time.");
     }

@@ -22,7 +22,7 @@ impl RunReplayer {
     /// Opens a recording of a run; returns the replayer and the recorded setup.
     ///
     /// # Errors
-    /// When the file is not a recording of a run, or its robot cannot be accepted. Names the file.
+    /// When the file is not a recording of a run, or its robot is invalid. Names the file.
     pub fn open(file: &Path) -> Result<(Self, RunSetup), AppError> {
         Self::of(file, RecordingReader::open(file)?)
     }
@@ -35,6 +35,12 @@ impl RunReplayer {
         Self::of(file, RecordingReader::open_to_cut(file)?)
     }
 
+    /// Whether a file has the recorded setup of a run, whichever program wrote the file.
+    #[must_use]
+    pub fn is_run(file: &Path) -> bool {
+        RecordingReader::open_to_cut(file).is_ok_and(|reader| reader.config().is_some())
+    }
+
     fn of(file: &Path, reader: RecordingReader) -> Result<(Self, RunSetup), AppError> {
         let name = file.display();
         let config = reader.config().ok_or_else(|| {
@@ -45,6 +51,11 @@ impl RunReplayer {
         let setup = RunSetup::of_recording(file, config.clone())?;
         if !setup.recording.is_all() {
             return Err(AppError::Input(format!("{name}: {}", RecordingContent::NO_IMAGES)));
+        }
+        if let Some(from) = setup.recorded_from_s {
+            return Err(AppError::Input(format!(
+                "{name}: the recording begins {from:.1} s after the start of its run, expected one from the start: `recording.mcap` of a run with --record all"
+            )));
         }
         Ok((Self { reader, jobs: BTreeMap::new(), contacts: None, span: None }, setup))
     }

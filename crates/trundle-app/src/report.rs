@@ -4,6 +4,7 @@ mod camera_picture;
 mod goal_outcome;
 mod run_folder;
 mod run_numbers;
+mod state_log;
 mod timing_page;
 mod zone_files;
 
@@ -12,4 +13,5 @@ pub use camera_picture::{camera_view, landmarks_in_map};
 pub use goal_outcome::GoalOutcome;
 pub use run_folder::{RunOutput, write_run};
 pub use run_numbers::{RunEnd, RunNumbers, TaskCounts, stage_rows, wall_clock};
+pub use state_log::state_log;
 pub use zone_files::write_zones;

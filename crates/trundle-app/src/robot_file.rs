@@ -11,7 +11,7 @@ use trundle_runtime::settings::{RobotFile, json_schema, to_commented_toml};
 /// warnings.
 ///
 /// # Errors
-/// Names the file, and the line or the value that cannot be accepted.
+/// Names the file, and the invalid line or value.
 pub fn load_robot(file: Option<&Path>, overrides: &[String]) -> Result<RobotConfig, AppError> {
     let text = file.map(read_text).transpose()?.unwrap_or_default();
     parse_robot(&text, file.map(|file| file.display().to_string()).as_deref(), overrides)
@@ -20,7 +20,7 @@ pub fn load_robot(file: Option<&Path>, overrides: &[String]) -> Result<RobotConf
 /// The robot of the text of a robot file, with `overrides` (each `key=value`) on top; `name` is that of the file in messages.
 ///
 /// # Errors
-/// Names the line or the value that cannot be accepted.
+/// Names the invalid line or value.
 pub fn parse_robot(text: &str, name: Option<&str>, overrides: &[String]) -> Result<RobotConfig, AppError> {
     let named = |mark: &str, problem: &dyn Display| match name {
         Some(name) => format!("{name}{mark} {problem}"),

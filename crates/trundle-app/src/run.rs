@@ -12,7 +12,7 @@ pub const AFTER_ARRIVAL_S: f64 = 0.5;
 /// operated run continues after its mission.
 ///
 /// # Errors
-/// When the robot or the checkpoint cannot be accepted, or the body failed.
+/// When the robot or the checkpoint is invalid, or the body failed.
 pub fn run_on_body(
     setup: &RunSetup,
     body: &mut dyn EncodedBody,
@@ -32,7 +32,7 @@ pub fn run_on_body(
             is_finished && !setup.is_operated && now - *finished.get_or_insert(now) >= AFTER_ARRIVAL_S;
         let is_out_of_time = setup.is_out_of_time(session.log());
         if is_out_of_time {
-            tracing::info!("the time limit of {:.1} s ends the run", setup.time_limit);
+            tracing::info!("the time limit of {} s ends the run", setup.time_limit);
         }
         if is_over || is_out_of_time || session.is_interrupted() {
             break;

@@ -31,7 +31,7 @@ pub struct RunLog {
     pub body: BodyLog,
     /// The newest state.
     pub state: DriveState,
-    /// Each change of the state.
+    /// Each change of the state, or of the kind of its reason, as in the program's log.
     pub changes: Vec<StateChange>,
     /// Whether only the last minute is stored.
     is_brief: bool,
@@ -43,7 +43,7 @@ const BRIEF_LOG_S: f64 = 60.0;
 /// Source: ours.
 const MIN_DROPPED_ENTRIES: usize = 1000;
 
-/// A change of the robot's state.
+/// A change of the robot's state, or of its reason.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct StateChange {
     /// Seconds since the first event.
@@ -93,6 +93,11 @@ impl RunLog {
         Self { is_brief: true, ..Self::default() }
     }
 
+    /// Whether the log keeps the last minute only.
+    pub fn is_brief(&self) -> bool {
+        self.is_brief
+    }
+
     /// Drops entries that are too old for a brief log.
     fn drop_old(&mut self) {
         let (now, end) = (self.now, self.elapsed());
@@ -108,7 +113,7 @@ impl RunLog {
         self.start.get_or_insert(now);
         self.now = now;
         if let Some(estimate) = &report.estimate
-            && self.changes.last().is_none_or(|last| last.state.name() != report.state.name())
+            && self.changes.last().is_none_or(|last| is_change(&last.state, &report.state))
         {
             let (at, state, pose) = (self.elapsed(), report.state.clone(), estimate.pose);
             self.changes.push(StateChange { at, state, transition: report.transition, pose });
@@ -183,6 +188,12 @@ impl RunLog {
             _ => {}
         }
     }
+}
+
+/// Whether the state or the kind of its reason differs.
+fn is_change(last: &DriveState, new: &DriveState) -> bool {
+    let kind = |state: &DriveState| state.reason().map(Reason::kind);
+    last.name() != new.name() || kind(last) != kind(new)
 }
 
 /// Drops the old entries from the front of a list sorted by time, many in one step.

@@ -1,6 +1,7 @@
 //! SLAM on a recorded RGB-D sequence: tracking, the comparison with ground truth, and the folder of results.
 
 mod comparison;
+mod depth_check;
 mod first_camera;
 mod floor_log;
 mod floor_mount;

@@ -12,14 +12,15 @@ use frames::SequenceFrames;
 use std::path::{Path, PathBuf};
 use trundle_core::{Pose2, Pose3, Stamp};
 use trundle_io::{
-    CameraModel, DepthStatistics, FileKind, KINECT_V2_DEPTH_SCALE, RosSequence, RosSequenceOptions,
-    RosTopics, SequenceCamera, TumSequence, Warnings,
+    CameraModel, DepthStatistics, FileKind, KINECT_V2_DEPTH_SCALE, LaserLogSources, RosImageTopics,
+    RosSequence, RosSequenceOptions, RosTopics, SequenceCamera, TumSequence, Warnings,
 };
 use trundle_runtime::{CameraMount, RobotConfig};
 use trundle_slam::ReadoutEstimate;
 
 /// Input of a sequence.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct SequenceOptions<'a> {
     /// A TUM RGB-D folder, a ROS bag or a recording of a run.
     pub path: &'a Path,
@@ -38,6 +39,16 @@ impl<'a> SequenceOptions<'a> {
     #[must_use]
     pub fn new(path: &'a Path) -> Self {
         Self { path, camera: None, depth_scale: None, recover: false, topics: RosSequenceOptions::default() }
+    }
+
+    /// The images of `path` with these topics, by a camera (preset or file, depth units per metre); `None` for the input's own.
+    #[must_use]
+    pub fn of_camera(
+        path: &'a Path,
+        (camera, depth_scale): (Option<&'a str>, Option<f64>),
+        topics: RosSequenceOptions,
+    ) -> Self {
+        Self { camera, depth_scale, topics, ..Self::new(path) }
     }
 }
 
@@ -70,7 +81,7 @@ impl SequenceInput {
     /// Whether `path` is read as RGB-D images: a TUM RGB-D folder, a recording of trundle, or a bag with images and without scans of a
     /// laser. With `topics` given, any bag counts as images.
     #[must_use]
-    pub fn is_one(path: &Path, topics: &RosSequenceOptions) -> bool {
+    pub fn is_sequence(path: &Path, topics: &RosSequenceOptions) -> bool {
         let names_images = topics.color_topic.is_some() || topics.depth_topic.is_some();
         match FileKind::of(path) {
             Ok(FileKind::SequenceFolder | FileKind::TrundleRecording) => true,
@@ -134,10 +145,12 @@ impl SequenceInput {
         let mut camera = SequenceCamera::choose(options.camera, options.path)?;
         log_warnings(&camera.warnings);
         let CameraModel { camera: lens, depth_scale } = &mut camera.model;
-        *depth_scale = options.depth_scale.unwrap_or(*depth_scale);
+        if let Some(scale) = options.depth_scale {
+            (*depth_scale, camera.is_depth_scale_known) = (scale, true);
+        }
         let mut sequence = TumSequence::open(options.path, *depth_scale, TumSequence::MAX_DIFFERENCE)?;
         log_warnings(sequence.warnings());
-        if options.depth_scale.is_none() && !camera.is_depth_scale_known {
+        if !camera.is_depth_scale_known {
             *depth_scale = assumed_depth_scale(&sequence, &camera.name, *depth_scale);
             sequence = sequence.with_depth_scale(*depth_scale);
         }
@@ -234,6 +247,12 @@ impl SequenceInput {
         }
     }
 
+    /// Whether the input is a recording of trundle.
+    #[must_use]
+    pub fn is_recording(&self) -> bool {
+        matches!(self.source, Source::Recording(_))
+    }
+
     /// Names of odometry and ground truth in the input, for messages.
     #[must_use]
     pub fn pose_sources(&self) -> [&'static str; 2] {
@@ -251,6 +270,14 @@ impl SequenceInput {
             Source::Folder(_) | Source::Bag(_) => None,
             Source::Recording(run) => run.cut_report(),
         }
+    }
+
+    /// The topics of a bag: of the depth images that become scans, of the odometry, and those unused. Empty for other inputs.
+    #[must_use]
+    pub fn laser_sources(&self) -> LaserLogSources {
+        let Source::Bag(sequence) = &self.source else { return LaserLogSources::default() };
+        let RosImageTopics { depth, odometry, left, .. } = sequence.topics().clone();
+        LaserLogSources { scans: depth, odometry, left }
     }
 
     /// Mount of the camera on the robot, the pose of a level first camera: by the input, else by the floor in its images. `None` if neither

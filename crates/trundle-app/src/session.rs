@@ -6,7 +6,9 @@ use crate::overload_watch::OverloadWatch;
 use crate::run_mark::{RunMark, RunMarkMessage};
 use crate::run_messages::RunMessages;
 use crate::setup::mission_text;
-use crate::{AppError, BestView, FinishedRun, Progress, RecordingCost, RunLog, RunRecorder, RunSetup};
+use crate::{
+    AppError, BestView, FinishedRun, Progress, RecordingContent, RecordingCost, RunLog, RunRecorder, RunSetup,
+};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::{Stamp, Twist2};
@@ -28,13 +30,20 @@ pub struct RunSession<'s> {
     earlier_tasks: Vec<TaskRecord>,
     start: Instant,
     is_interrupted: bool,
+    /// Content of the present recording.
+    recorded: RecordingContent,
+    /// Time of the last report of the free space.
+    space_reported: Option<Stamp>,
 }
+
+/// Period of reports of the free space \[s\]. Source: ours.
+const SPACE_PERIOD_S: f64 = 5.0;
 
 impl<'s> RunSession<'s> {
     /// Starts the robot of `setup` and records the setup.
     ///
     /// # Errors
-    /// When the robot or the checkpoint cannot be accepted.
+    /// When the robot or the checkpoint is invalid.
     pub fn new(
         setup: &'s RunSetup,
         mut recorder: RunRecorder,
@@ -48,12 +57,7 @@ impl<'s> RunSession<'s> {
         if recorder.writes_checkpoints() {
             robot = robot.with_checkpoints();
         }
-        let (config, camera) = (setup.clone(), setup.robot.camera);
-        recorder.write(move |file| {
-            file.set_camera(camera);
-            Ok(())
-        });
-        recorder.write(move |file| file.record_json("/config", "trundle.Config", Stamp::default(), &config));
+        record_setup(&mut recorder, Stamp::default(), setup.clone());
         tracing::info!("run in '{}', seed {}: {}", setup.scene, setup.seed, mission_text(&setup.mission));
         let (view, overload) = (BestView::default(), OverloadWatch::default());
         let start = Instant::now();
@@ -62,6 +66,7 @@ impl<'s> RunSession<'s> {
         if let Some(link) = &mut operator {
             link.note_image_size([setup.robot.camera.width(), setup.robot.camera.height()]);
             link.begin_annotations(robot.annotations(), setup.annotations_file.as_deref());
+            link.show_recording(recorder.switch().clone());
         }
         Ok(Self {
             setup,
@@ -76,6 +81,8 @@ impl<'s> RunSession<'s> {
             earlier_tasks: Vec::new(),
             start,
             is_interrupted: false,
+            recorded: setup.recording,
+            space_reported: None,
         })
     }
 
@@ -101,6 +108,7 @@ impl<'s> RunSession<'s> {
     /// # Errors
     /// When an event cannot be decoded or the body refuses the command.
     pub fn step(&mut self, input: RunInput, body: &mut dyn EncodedBody) -> Result<bool, AppError> {
+        self.follow_switch();
         self.record_contacts(body);
         let (stamp, report) = match input {
             RunInput::Event(event) => (event.stamp(), self.on_event(event)?),
@@ -131,6 +139,33 @@ impl<'s> RunSession<'s> {
             body.start_job(job);
         }
         Ok(report.finished)
+    }
+
+    /// Follows the switch of the recording. A further file contains no images only if the recording was started without images.
+    fn follow_switch(&mut self) {
+        match self.recorder.switch().take_request() {
+            Some(true) => self.begin_part(),
+            Some(false) => self.recorder.end(),
+            None => {}
+        }
+        let now = self.log.now;
+        let is_due = self.space_reported.is_none_or(|last| now - last >= SPACE_PERIOD_S);
+        if is_due && self.operator.as_ref().is_some_and(OperatorLink::is_watched) {
+            self.space_reported = Some(now);
+            self.recorder.report_space();
+        }
+    }
+
+    fn begin_part(&mut self) {
+        if self.recorded == RecordingContent::None {
+            self.recorded = RecordingContent::All;
+        }
+        let (now, recording) = (self.log.now, self.recorded);
+        let setup = RunSetup { recording, recorded_from_s: Some(self.log.elapsed()), ..self.setup.clone() };
+        self.recorder.begin_part();
+        record_setup(&mut self.recorder, now, setup);
+        // Everything is new to this file: mount, map, goal and state.
+        self.messages = RunMessages::default();
     }
 
     /// Records the body's contacts, if it counts them.
@@ -176,18 +211,21 @@ impl<'s> RunSession<'s> {
         let (queue_lengths, lines_lost) = (self.recorder.queue_lengths.clone(), self.recorder.lines_lost);
         let last = if self.recorder.writes_checkpoints() { self.robot.checkpoint() } else { None };
         let checkpoint_error = self.recorder.finish_checkpoints(last).err();
+        let switch = self.recorder.switch().clone();
         let (cpu_time, error) = match self.recorder.finish() {
             Ok(spent) => (spent, None),
             Err(error) => (Duration::ZERO, Some(error)),
         };
-        let recording = RecordingCost { queue_lengths, lines_lost, cpu_time, error, checkpoint_error };
+        let failed_files = switch.state().failed_files;
+        let recording =
+            RecordingCost { queue_lengths, lines_lost, cpu_time, error, failed_files, checkpoint_error };
         let seconds = self.start.elapsed().as_secs_f64();
         let Self { robot, log, view, earlier_tasks, .. } = self;
-        Ok(FinishedRun { robot, log, earlier_tasks, view, seconds, recording })
+        Ok(FinishedRun { robot, log, earlier_tasks, view, seconds, recording, cut: None })
     }
 
     fn on_event(&mut self, event: EncodedEvent) -> Result<StepReport, AppError> {
-        let is_recorded = self.setup.recording.is_all() || !matches!(event, EncodedEvent::Rgbd(_));
+        let is_recorded = self.recorded.is_all() || !matches!(event, EncodedEvent::Rgbd(_));
         if is_recorded {
             let recorded = event.clone();
             self.recorder.write(move |file| file.record_event(&recorded));
@@ -197,7 +235,7 @@ impl<'s> RunSession<'s> {
             image.stamp = image.stamp.after(-self.setup.robot.image_delay);
             self.view.on_image(&image);
             if let Some(link) = &mut self.operator {
-                link.note_image(image.stamp, &image.color_jpeg);
+                link.note_image(&image);
             }
             let stamp = image.stamp;
             if let Some(sentence) = self.overload.on_image(stamp, self.robot.dropped_images().len()) {
@@ -270,4 +308,14 @@ impl<'s> RunSession<'s> {
             rate(Stage::Control),
         )
     }
+}
+
+/// Records the setup, which a recording begins with.
+fn record_setup(recorder: &mut RunRecorder, stamp: Stamp, setup: RunSetup) {
+    let camera = setup.robot.camera;
+    recorder.write(move |file| {
+        file.set_camera(camera);
+        Ok(())
+    });
+    recorder.write(move |file| file.record_json("/config", "trundle.Config", stamp, &setup));
 }

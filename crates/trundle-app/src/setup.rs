@@ -1,5 +1,6 @@
 //! The setup of a run: all that a replay needs besides the events.
 
+use crate::vocabulary_file::read_vocabulary;
 use crate::{AppError, RecordingContent, RunLog};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use serde::{Deserialize, Serialize};
@@ -57,6 +58,9 @@ pub struct RunSetup {
     /// Zones and named places of the map; `None` uses those of the checkpoint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub annotations: Option<MapAnnotations>,
+    /// Time of the run at which the recording begins \[s\]; `None` for one from the start, which a replay needs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recorded_from_s: Option<f64>,
     /// The file that stores changes of zones and places.
     #[serde(skip)]
     pub annotations_file: Option<PathBuf>,
@@ -88,6 +92,7 @@ impl RunSetup {
             checkpoint: None,
             vocabulary: None,
             annotations: None,
+            recorded_from_s: None,
             annotations_file: None,
         }
     }
@@ -108,6 +113,15 @@ impl RunSetup {
             .map_err(|error| AppError::Input(format!("{name}: the configuration cannot be used: {error}")))?;
         setup.robot.clone().validated().map_err(|error| AppError::Input(format!("{name}: {error}")))?;
         Ok(setup)
+    }
+
+    /// The command of a run on sensors that something else drove: a bag or a folder of images.
+    pub const SENSORS: &'static str = "replay";
+
+    /// Whether the run has only the sensors of a robot that something else drove.
+    #[must_use]
+    pub fn is_of_sensors(&self) -> bool {
+        self.command == Self::SENSORS
     }
 
     /// The same run with the end at `time_limit` of the robot's time \[s\].
@@ -137,6 +151,25 @@ impl RunSetup {
     #[must_use]
     pub fn with_vocabulary(self, vocabulary: &Vocabulary) -> Self {
         Self { vocabulary: Some(BASE64_STANDARD.encode(vocabulary.to_bytes())), ..self }
+    }
+
+    /// The same run, with places recognised by the vocabulary of a file, if one is given.
+    ///
+    /// # Errors
+    /// When the file cannot be read or is no vocabulary.
+    pub fn with_vocabulary_of(self, file: Option<&Path>) -> Result<Self, AppError> {
+        let vocabulary = file.map(read_vocabulary).transpose()?;
+        Ok(match vocabulary {
+            Some(vocabulary) => self.with_vocabulary(&vocabulary),
+            None => self,
+        })
+    }
+
+    /// Lines for a person before a run of `body` (its name): the mission, and the recording with the camera's rate \[Hz\].
+    #[must_use]
+    pub fn announcement(&self, body: &str, camera_rate_hz: f64) -> String {
+        let recording = self.recording.announcement(&self.robot.camera, camera_rate_hz, self.time_limit);
+        format!("{body}: {}.\n{recording}", mission_text(&self.mission))
     }
 
     /// The same run with the zones and places of a GeoJSON file; changes are stored in this file. If the file is missing, those of the

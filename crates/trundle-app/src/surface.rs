@@ -12,7 +12,7 @@ use crate::sequence_input::SequenceInput;
 use crate::{AppError, StepProgress, stop};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use trundle_core::{PinholeCamera, Pose3, RgbdImage, Stamp};
+use trundle_core::{Hypotenuse, PinholeCamera, Pose3, RgbdImage, Stamp};
 use trundle_io::{HeightGrid, SurfaceData, glb_bytes, height_files, octomap_bytes, ply_bytes};
 use trundle_surface::{HeightMap, OccupiedVoxels, SurfaceMap, SurfaceMesh, VoxelState, surface_mesh};
 
@@ -131,8 +131,8 @@ impl Surface {
     fn is_due(&self, stamp: Stamp, pose: Pose3) -> bool {
         self.last.is_none_or(|(at, last)| {
             let [x, y, z, turn @ ..]: [f64; 6] = (last.inverse() * pose).log().into();
-            x.hypot(y).hypot(z) > MIN_DISTANCE_M
-                || turn[0].hypot(turn[1]).hypot(turn[2]) > MIN_TURN_RAD
+            x.hypotenuse(y).hypotenuse(z) > MIN_DISTANCE_M
+                || turn[0].hypotenuse(turn[1]).hypotenuse(turn[2]) > MIN_TURN_RAD
                 || stamp - at > MAX_PAUSE_S
         })
     }

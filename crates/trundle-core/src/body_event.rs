@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// An event of a body other than motion and images.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct BodyEvent {
     /// Stamp of the event.
     pub stamp: Stamp,
@@ -13,6 +14,11 @@ pub struct BodyEvent {
 }
 
 impl BodyEvent {
+    /// An event of this kind.
+    pub const fn new(stamp: Stamp, kind: BodyEventKind) -> Self {
+        Self { stamp, kind }
+    }
+
     /// The event, its numbers finite and in range.
     ///
     /// # Errors

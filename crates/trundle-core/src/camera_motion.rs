@@ -1,6 +1,6 @@
 //! The camera's motion between two images as measured by wheels and gyro, with its covariance.
 
-use crate::{Pose2, Pose3};
+use crate::{Hypotenuse, Pose2, Pose3};
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
 /// Standard deviation of the floor's height, m per sqrt(m) of path. Source: \[DIN18202, table 3\], 1 cm over 4 m.
@@ -61,7 +61,7 @@ impl From<Pose3> for CameraMotion {
 
 /// Covariance of the base's motion in space: the given one in the plane, that of the floor outside it.
 fn in_space(motion: &Pose2, planar: &Matrix3<f64>) -> Matrix6<f64> {
-    let path = motion.x.hypot(motion.y) + HALF_WHEELBASE_M * motion.theta.abs();
+    let path = motion.x.hypotenuse(motion.y) + HALF_WHEELBASE_M * motion.theta.abs();
     let (up, tilt) = (FLOOR_HEIGHT_NOISE.powi(2) * path, FLOOR_TILT_NOISE.powi(2) * path);
     let mut covariance = Matrix6::from_diagonal(&Vector6::new(0.0, 0.0, up, tilt, tilt, 0.0));
     for (i, row) in IN_PLANE.into_iter().enumerate() {

@@ -1,6 +1,6 @@
 //! The pose estimate that planning and control use: stamp, pose, twist and covariance.
 
-use crate::{Pose2, Stamp, Twist2};
+use crate::{Hypotenuse, Pose2, Stamp, Twist2};
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,7 @@ impl PoseEstimate {
     pub fn position_sigma(&self) -> f64 {
         let block = self.covariance.fixed_view::<2, 2>(0, 0);
         let (mean, half) = ((block[(0, 0)] + block[(1, 1)]) / 2.0, (block[(0, 0)] - block[(1, 1)]) / 2.0);
-        (mean + half.hypot(block[(0, 1)])).max(0.0).sqrt()
+        (mean + half.hypotenuse(block[(0, 1)])).max(0.0).sqrt()
     }
 
     /// Standard deviation of the heading, rad.

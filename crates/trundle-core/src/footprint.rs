@@ -3,6 +3,9 @@
 use crate::{Invalid, Vector2, require_positive};
 use std::f64::consts::TAU;
 
+/// Largest plausible distance of a point of the footprint from the base's origin \[m\]. Source: ours.
+pub const MAX_FOOTPRINT_RADIUS_M: f64 = 3.0;
+
 /// The robot's outline on the floor, base frame.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Footprint {

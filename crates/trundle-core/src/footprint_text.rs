@@ -1,6 +1,6 @@
 //! Footprints as text: a radius, corners, or the form of Nav2's costmaps.
 
-use crate::{Footprint, Vector2};
+use crate::{Footprint, Invalid, MAX_FOOTPRINT_RADIUS_M, Vector2};
 use std::str::FromStr;
 
 impl FromStr for Footprint {
@@ -8,11 +8,21 @@ impl FromStr for Footprint {
 
     /// A radius (`0.2`), corners (`0.3,0.2 -0.3,0.2 ...`), or corners in Nav2's format (`[[0.3, 0.2], [-0.3, 0.2], ...]`), m.
     fn from_str(text: &str) -> Result<Self, String> {
-        if !text.contains([',', '[']) {
-            return Self::disc(number(text)?).map_err(|invalid| invalid.to_string());
-        }
-        Self::polygon(footprint_corners(text)?).map_err(|invalid| invalid.to_string())
+        let footprint = match text.contains([',', '[']) {
+            true => Self::polygon(footprint_corners(text)?),
+            false => Self::disc(number(text)?),
+        };
+        footprint.and_then(plausible).map_err(|invalid| invalid.to_string())
     }
+}
+
+/// Refuses a footprint that is too large for an indoor robot.
+fn plausible(footprint: Footprint) -> Result<Footprint, Invalid> {
+    let radius = footprint.circumscribed_radius();
+    let expected = format!("at most {MAX_FOOTPRINT_RADIUS_M} m; is it in millimetres?");
+    let is_plausible = radius <= MAX_FOOTPRINT_RADIUS_M;
+    let rounded = (radius * 1e3).round() / 1e3;
+    if is_plausible { Ok(footprint) } else { Err(Invalid::new("footprint radius", rounded, "m", expected)) }
 }
 
 /// The corners of a footprint as text, in either form, base frame, m.
@@ -67,6 +77,9 @@ mod tests {
         assert_eq!(refused("wide"), "'wide' in the footprint is not a number, expected m");
         assert_eq!(refused("0.3,0.2 0.1"), "corner '0.1', expected X,Y");
         assert_eq!(refused("0,0 1,0 0.2,0.2 0,1"), "footprint is turned inward at corner 1, expected convex");
+        assert_eq!(refused("200"), "footprint radius is 200 m, expected at most 3 m; is it in millimetres?");
+        assert!(refused("300,200 -300,200 -300,-200").ends_with("is it in millimetres?"));
+        assert!("3".parse::<Footprint>().is_ok());
         assert!(refused("0,0 1,0 2,0").contains("footprint area is 0 m^2"));
         assert_eq!(refused("[[0.3,0.2],[a,1]]"), "'a' in the footprint is not a number, expected m");
         for broken in ["[[0.3,0.2],[0.1,0.2]", "[", "[]", "[[0.3,0.2],3]", "[[0.3,0.2] 3]", "[0.3,0.2]"] {

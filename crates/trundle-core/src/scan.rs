@@ -155,7 +155,7 @@ impl Scan {
     /// The scan as if all beams were measured at the stamp, by the motion of the base.
     ///
     /// `base_from_base_at(t)` is the base's pose `t` s after the stamp in the base frame at the stamp. Each end of a beam stays where it
-    /// was measured; beams then begin at the common origin, at bearings of their own. A scan without beam times is returned as it is.
+    /// was measured; beams then begin at the common origin, each at its own bearing. A scan without beam times is returned as it is.
     #[must_use]
     pub fn deskewed(self, base_from_base_at: impl Fn(f64) -> Pose2) -> Self {
         let Some(times) = self.beam_times else { return self };

@@ -12,6 +12,7 @@ pub enum Certificate {
 
 /// The setting of [`crate::DockingConfig`] that ended a search without a manoeuvre and without a proof of its impossibility.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SearchLimit {
     /// `search_nodes`: the number of expanded nodes.
     SearchNodes,

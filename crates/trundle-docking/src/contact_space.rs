@@ -137,7 +137,7 @@ impl<'a> ContactSpace<'a> {
         let (center, half) = (pose.position(), Vector2::repeat(hull.outer_radius()));
         let mut work = self.scene.pieces().len() as u64;
         self.scene.visit_pieces(center, half, |segment, number| {
-            free.meet(hull, segment, number, pose, angles, arcs);
+            free.limit_by(hull, segment, number, pose, angles, arcs);
             work += HEADINGS_COST;
         });
         match &self.profile {
@@ -146,7 +146,7 @@ impl<'a> ContactSpace<'a> {
                 work += self.scene.run_query(&mut query);
             }
             None => self.scene.visit_points(center, half, |p, number| {
-                free.meet(hull, &Segment::point(p), number, pose, angles, arcs);
+                free.limit_by(hull, &Segment::point(p), number, pose, angles, arcs);
                 work += HEADINGS_COST;
             }),
         }
@@ -164,19 +164,19 @@ impl<'a> ContactSpace<'a> {
         let half = Vector2::new(direction.x.abs(), direction.y.abs()) * reach + Vector2::repeat(outer);
         let hull = &self.hull;
         let mut work = self.scene.pieces().len() as u64;
-        let mut look = |segment: &Segment, number: u32| {
+        let mut limit = |segment: &Segment, number: u32| {
             work += STRAIGHT_COST;
             let seen = segment.in_frame(center, direction.x, direction.y);
             if seen.a.y.min(seen.b.y) <= outer && seen.a.y.max(seen.b.y) >= -outer {
-                free.meet(hull, &seen, || (number, segment.nearest(center)));
+                free.limit_by(hull, &seen, || (number, segment.nearest(center)));
             }
         };
-        self.scene.visit_pieces(center, half, &mut look);
+        self.scene.visit_pieces(center, half, &mut limit);
         match &self.profile {
             Some(profile) => {
                 work += self.scene.run_query(&mut StraightQuery::new(hull, profile, pose, &mut free))
             }
-            None => self.scene.visit_points(center, half, |p, number| look(&Segment::point(p), number)),
+            None => self.scene.visit_points(center, half, |p, number| limit(&Segment::point(p), number)),
         }
         self.spend(work);
         free.ahead = (free.ahead - BACK_OFF).max(0.0);

@@ -8,6 +8,7 @@ use trundle_core::Invalid;
 
 /// Reason for a query that cannot be planned.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum DockingRefusal {
     /// The robot overlaps an obstacle at the start.
     #[error("the start overlaps {0}")]

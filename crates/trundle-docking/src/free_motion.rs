@@ -30,7 +30,7 @@ impl FreeTurn {
         Self { left: f64::INFINITY, right: f64::INFINITY, left_by: None, right_by: None };
 
     /// Reduces the free turn by a segment, for a hull at a pose. The last two arguments are buffers.
-    pub(crate) fn meet(
+    pub(crate) fn limit_by(
         &mut self,
         hull: &RoundedHull,
         segment: &Segment,
@@ -81,7 +81,12 @@ pub struct FreeDrive {
 
 impl FreeDrive {
     /// Reduces the free distances by a segment in the hull's frame; `blocker` yields its number and position.
-    pub(crate) fn meet(&mut self, hull: &RoundedHull, seen: &Segment, blocker: impl Fn() -> (u32, Vector2)) {
+    pub(crate) fn limit_by(
+        &mut self,
+        hull: &RoundedHull,
+        seen: &Segment,
+        blocker: impl Fn() -> (u32, Vector2),
+    ) {
         let by = || {
             let (number, at) = blocker();
             Some(Blocker::listed(number, at))

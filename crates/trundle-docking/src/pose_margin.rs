@@ -1,7 +1,7 @@
 //! The margin that covers the uncertainty of a pose.
 
 use nalgebra::Matrix3;
-use trundle_core::Footprint;
+use trundle_core::{Footprint, Hypotenuse};
 
 /// The margin from obstacles, m, with which a pose of this covariance (x m, y m, heading rad, right perturbation) has no contact within
 /// this many standard deviations.
@@ -13,7 +13,7 @@ use trundle_core::Footprint;
 pub fn margin_of(covariance: &Matrix3<f64>, footprint: &Footprint, sigmas: f64) -> f64 {
     let (xx, yy) = (covariance[(0, 0)], covariance[(1, 1)]);
     let xy = (covariance[(0, 1)] + covariance[(1, 0)]) / 2.0;
-    let greatest = (xx + yy) / 2.0 + ((xx - yy) / 2.0).hypot(xy);
+    let greatest = (xx + yy) / 2.0 + ((xx - yy) / 2.0).hypotenuse(xy);
     let margin = sigmas * (greatest.sqrt() + footprint.circumscribed_radius() * covariance[(2, 2)].sqrt());
     if margin.is_finite() { margin } else { 0.0 }
 }

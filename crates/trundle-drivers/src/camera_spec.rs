@@ -3,6 +3,7 @@
 use crate::camera::kinect2::usb::KINECT2_USB_STATE;
 use crate::camera::kinect2::{DecoderConfig, DumpCamera};
 use crate::camera::native::openni2::{OpenNiSettings, serve_openni};
+use crate::camera::native::realsense::{RealSenseApi, RealSenseCamera, RealSenseSettings};
 use crate::camera::native::{NativeKind, Selection, open};
 use crate::camera::pipe::{FolderCamera, ProcessCamera, StreamCamera, StreamWriter};
 use crate::camera::{CameraError, CameraFrame, DepthCamera};
@@ -55,6 +56,22 @@ impl CameraSpec {
             }
             Self::Native(kind, selection) => open(*kind, selection)?,
         })
+    }
+
+    /// Opens a RealSense camera with its gyro.
+    ///
+    /// # Errors
+    /// As [`CameraSpec::open`], and for every other kind of camera: its gyro is not read.
+    pub fn open_with_gyro(&self) -> Result<Box<dyn DepthCamera>, CameraError> {
+        let Self::Native(NativeKind::RealSense, selection) = self else {
+            return Err(CameraError::StreamsUnavailable {
+                device: self.to_string(),
+                wanted: "a gyro".to_owned(),
+                remedy: "use realsense (D435i, D455), or the gyro of the base".to_owned(),
+            });
+        };
+        let settings = RealSenseSettings { gyro: true, ..RealSenseSettings::default() };
+        Ok(Box::new(RealSenseCamera::open(&RealSenseApi::load(None)?, selection, &settings)?))
     }
 
     /// Writes the frames of the camera to `out`, as docs/camera-stream.md has them, until that fails or the camera ends.
@@ -144,6 +161,12 @@ mod tests {
                 text.parse::<CameraSpec>().unwrap_err().starts_with(&format!("no camera '{text}', expected"))
             );
         }
+    }
+
+    #[test]
+    fn only_a_realsense_has_a_gyro_that_is_read() {
+        let error = "orbbec".parse::<CameraSpec>().unwrap().open_with_gyro().err().unwrap().to_string();
+        assert!(error.contains("orbbec does not offer a gyro: use realsense"), "{error}");
     }
 
     #[test]

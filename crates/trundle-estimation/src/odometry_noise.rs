@@ -3,7 +3,7 @@
 use crate::odometry_config::OdometryConfig;
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
-use trundle_core::Pose2;
+use trundle_core::{Hypotenuse, Pose2};
 
 /// One small motion of the base, with the source of its turn.
 #[derive(Debug, Clone, Copy)]
@@ -23,7 +23,7 @@ pub(crate) struct Step {
 impl OdometryConfig {
     /// Covariance of a small motion of the base measured by wheels without a gyro, as a right perturbation (x m, y m, theta rad).
     pub fn by_wheels(&self, motion: &Pose2) -> Matrix3<f64> {
-        let distance = motion.x.hypot(motion.y);
+        let distance = motion.x.hypotenuse(motion.y);
         of_step(self, &Step { distance, turn: motion.theta, dt: 0.0, by_gyro: None, slip: 0.0 })
     }
 }

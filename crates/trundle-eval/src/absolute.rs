@@ -7,6 +7,7 @@ use trundle_core::{Invalid, Pose3, Stamp, Vector3, require_finite};
 /// Settings of the absolute trajectory error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct AbsoluteConfig {
     /// Largest time difference of compared poses, s; 0 or more; 0.01 as in evo.
     pub max_difference: f64,
@@ -21,6 +22,11 @@ impl Default for AbsoluteConfig {
 }
 
 impl AbsoluteConfig {
+    /// These settings.
+    pub const fn new(max_difference: f64, alignment: Alignment) -> Self {
+        Self { max_difference, alignment }
+    }
+
     /// Returns a valid configuration unchanged.
     ///
     /// # Errors

@@ -24,6 +24,7 @@ impl fmt::Display for Side {
 
 /// Reason why two trajectories or maps cannot be compared.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum EvalError {
     /// A trajectory without a pose.
     #[error("the {0} trajectory has no pose")]

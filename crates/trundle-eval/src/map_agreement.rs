@@ -7,6 +7,7 @@ use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Vector2, requ
 /// Settings of the comparison of a map with the true map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct MapAgreementConfig {
     /// Largest distance between the centres of occupied cells that agree, m, 0.001 to 10. Default 0.05.
     pub within: f64,

@@ -1,6 +1,6 @@
 //! The occupied cells of a grid, with a search for the nearest one.
 
-use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
+use trundle_core::{Cell, CellIndex, GridGeometry, Hypotenuse, OccupancyGrid, Vector2};
 
 /// The occupied cells of a grid, for nearest-cell queries.
 #[derive(Debug)]
@@ -69,7 +69,7 @@ impl OccupiedCells {
         let cells = &self.occupied[row * self.geometry.width..];
         let columns = (first as usize..=last as usize).filter(|&col| cells[col]);
         let nearest = columns.min_by(|&a, &b| (a as f64 - x).abs().total_cmp(&(b as f64 - x).abs()))?;
-        Some((nearest, away.hypot(nearest as f64 - x)))
+        Some((nearest, away.hypotenuse(nearest as f64 - x)))
     }
 }
 

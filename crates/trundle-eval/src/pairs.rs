@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use trundle_core::{Invalid, Pose3, Stamp, require_positive};
 
-/// Number of frames from which a delta is refused: more than a trajectory has. Source: ours.
+/// Smallest number of frames at which a delta is refused: more than a trajectory has. Source: ours.
 const MAX_FRAMES: f64 = 1e9;
 
 /// Distance between the two poses of a relative error.

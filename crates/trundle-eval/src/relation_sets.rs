@@ -7,6 +7,7 @@ use trundle_core::{Invalid, Pose3, Stamp, require_in};
 /// Selection of the pairs of reference poses that become relations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RelationSetsConfig {
     /// Distance travelled between the poses of a near relation, m, 0.01 to 1000. Default 1.
     pub near: f64,

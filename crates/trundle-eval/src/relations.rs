@@ -18,6 +18,7 @@ pub struct Relation {
 /// Settings of the comparison of relations with an estimate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RelationConfig {
     /// Largest difference of stamps between a pose of the estimate and a time, s; 0 or more; 0.01 as for [`crate::AbsoluteConfig`].
     pub max_difference: f64,

@@ -8,6 +8,7 @@ use trundle_core::{Invalid, Pose3, Stamp};
 /// Settings of the relative pose error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RelativeConfig {
     /// Largest time difference of compared poses, s; 0 or more; 0.01 as in evo.
     pub max_difference: f64,
@@ -24,6 +25,11 @@ impl Default for RelativeConfig {
 }
 
 impl RelativeConfig {
+    /// These settings.
+    pub const fn new(max_difference: f64, delta: Delta, all_pairs: bool) -> Self {
+        Self { max_difference, delta, all_pairs }
+    }
+
     /// Returns a valid configuration unchanged.
     ///
     /// # Errors

@@ -31,6 +31,12 @@ pub struct BarnRequest {
 }
 
 impl BarnRequest {
+    /// Runs in the `worlds` of a folder with `seeds` seeds each, with the given robot.
+    #[must_use]
+    pub fn new(data: PathBuf, worlds: Option<IndexRange>, seeds: u32, robot: Option<RobotConfig>) -> Self {
+        Self { data, worlds, seeds, robot }
+    }
+
     /// The robot of the runs: the requested one, else the benchmark's.
     #[must_use]
     pub fn robot(&self) -> RobotConfig {

@@ -78,7 +78,9 @@ fn trials() -> Result<Vec<CorridorTrial>, AppError> {
             if stop::is_requested(|| format!("{} of 8 plans", trials.len())) {
                 return if trials.is_empty() { Err(AppError::Stopped) } else { Ok(trials) };
             }
-            let docker = DockingPlanner::new(DockingConfig { method, ..DockingConfig::default() })?;
+            let mut config = DockingConfig::default();
+            config.method = method;
+            let docker = DockingPlanner::new(config)?;
             let problem = scenario.problem();
             let plan = docker
                 .plan(&problem.footprint, &problem.scene()?, problem.start, problem.goal)

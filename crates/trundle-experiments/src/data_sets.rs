@@ -93,7 +93,7 @@ impl DataSet {
     #[must_use]
     pub fn how_to_get(&self) -> String {
         format!(
-            "the data set '{}' ({}) does not come with trundle; `{}` fetches the original, `trundle data fetch-list` says the rest",
+            "the data set '{}' ({}) does not come with trundle; `{}` fetches the original, `trundle data fetch-list` lists all data sets",
             self.name, self.licence, self.command
         )
     }

@@ -39,7 +39,7 @@ struct FaultScenario {
     end: End,
 }
 
-/// Longest time of a run to a goal behind a door that stays closed \[s\]: the way to the door, and a patience of 75 s. Source: ours.
+/// Longest time of a run to a goal behind a door that stays closed \[s\]: the drive to the door, and a patience of 75 s. Source: ours.
 const CLOSED_DOOR_TIME_S: f64 = 120.0;
 
 /// End of a permanent fault, s.

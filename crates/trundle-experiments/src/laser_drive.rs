@@ -97,7 +97,9 @@ pub fn drive(
     seconds: f64,
     seed: u64,
 ) -> Result<LaserDrive, AppError> {
-    let config = SimConfig { has_camera: false, laser: Some(laser), ..SimConfig::default() };
+    let mut config = SimConfig::default();
+    config.has_camera = false;
+    config.laser = Some(laser);
     let scene = Scene {
         name: "laser drive".to_owned(),
         world,

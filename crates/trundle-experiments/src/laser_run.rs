@@ -34,6 +34,8 @@ pub struct Moment {
     pub pose: Pose2,
     /// Distance of the estimate from the true position, m.
     pub estimate_error: f64,
+    /// Standard deviation of the estimated position along its most uncertain direction, m.
+    pub estimate_sigma: f64,
     /// The command.
     pub twist: Twist2,
     /// True clearance of the outline, m.
@@ -58,17 +60,16 @@ pub struct LaserRun {
 
 /// A Hokuyo-like laser, as in the BARN challenge: 270 deg, 720 beams, 30 m; all beams simultaneous, as in Gazebo.
 pub fn hokuyo(forward: f64) -> LaserConfig {
-    LaserConfig {
-        x: forward,
-        z: 0.25,
-        field_of_view: 270_f64.to_radians(),
-        beams: 720,
-        rate_hz: 40.0,
-        range_min: 0.06,
-        range_max: 30.0,
-        noise: 0.01,
-        ..LaserConfig::default()
-    }
+    let mut config = LaserConfig::default();
+    config.x = forward;
+    config.z = 0.25;
+    config.field_of_view = 270_f64.to_radians();
+    config.beams = 720;
+    config.rate_hz = 40.0;
+    config.range_min = 0.06;
+    config.range_max = 30.0;
+    config.noise = 0.01;
+    config
 }
 
 /// Runs the robot until `is_over` is true, or its mission or its time ends; shows it to viewers (`watch`).
@@ -105,8 +106,10 @@ pub fn drive(
         RobotBody::command(&mut body, twist).map_err(AppError::input)?;
         let (time, pose) = (body.stamp().as_secs(), body.true_pose());
         let (clearance, contacts) = (body.clearance(), body.contacts());
-        let estimate_error = robot.estimate().pose.distance(&(map_from_world * pose));
-        let moment = Moment { time, pose, estimate_error, twist, clearance, contacts };
+        let estimate = robot.estimate();
+        let estimate_error = estimate.pose.distance(&(map_from_world * pose));
+        let estimate_sigma = estimate.position_sigma();
+        let moment = Moment { time, pose, estimate_error, estimate_sigma, twist, clearance, contacts };
         moments.push(moment);
         let is_stopped = || stop::is_requested(|| format!("{time:.1} s of a run"));
         if report.finished || is_over(&moment) || time > plan.time_limit || is_stopped() {
@@ -125,6 +128,12 @@ impl LaserRun {
     /// Largest distance of the estimate from truth, m.
     pub fn worst_estimate(&self) -> f64 {
         self.moments.iter().map(|moment| moment.estimate_error).fold(0.0, f64::max)
+    }
+
+    /// Largest distance of the estimate from truth among the moments in which it exceeds three of its standard deviations, m.
+    pub fn worst_unnoticed_estimate(&self) -> f64 {
+        let is_unnoticed = |m: &&Moment| m.estimate_error > 3.0 * m.estimate_sigma;
+        self.moments.iter().filter(is_unnoticed).map(|m| m.estimate_error).fold(0.0, f64::max)
     }
 
     /// True distance driven, m.

@@ -17,11 +17,8 @@ use std::path::{Path, PathBuf};
 use trial::{GOAL_TOLERANCE_M, GOAL_TOLERANCE_RAD};
 use trundle_app::AppError;
 use trundle_app::operator::OperatorLink;
-use trundle_control::{FollowerConfig, StabilizerConfig};
 use trundle_core::{DriveLimits, Invalid};
-use trundle_estimation::LocalizerConfig;
 use trundle_io::{OutputFolder, write_map};
-use trundle_mapping::MapperConfig;
 use trundle_runtime::{Mission, RangeSource, RobotConfig, Task};
 use trundle_sim::{FaultSchedule, SimConfig};
 
@@ -49,6 +46,12 @@ pub struct MrpbRequest {
 }
 
 impl MrpbRequest {
+    /// Runs on the courses of a folder whose names contain `only`, with `seeds` seeds each and the given robot.
+    #[must_use]
+    pub fn new(data: PathBuf, only: Option<String>, seeds: u32, robot: Option<RobotConfig>) -> Self {
+        Self { data, only, seeds, robot }
+    }
+
     /// The robot of the runs: the requested one, else the benchmark's.
     #[must_use]
     pub fn robot(&self) -> RobotConfig {
@@ -113,7 +116,7 @@ impl ExperimentReport for MrpbOutcome {
 }
 
 /// The benchmark's robot as the autonomy's settings: a round two-wheeled base with a laser.
-fn robot() -> RobotConfig {
+pub(crate) fn robot() -> RobotConfig {
     let mut robot = RobotConfig::default();
     robot.footprint_radius = ROBOT_RADIUS_M + INFLATION_M;
     robot.sight = RangeSource::Laser;
@@ -122,28 +125,19 @@ fn robot() -> RobotConfig {
     robot.schedule.check_hz = 10.0;
     robot.schedule.improve_hz = 1.0;
     // Only the ends of a long corridor determine the position along it.
-    robot.mapping = MapperConfig { max_range: LASER_RANGE_M, ..MapperConfig::default() };
+    robot.mapping.max_range = LASER_RANGE_M;
     // Errors of laser scans are less correlated than those of images: each scan corrects less of the heading.
-    robot.localization = LocalizerConfig {
-        min_position_sigma: 0.005,
-        min_heading_sigma_deg: 0.1,
-        scan_heading_sigma_deg: 0.3,
-        ..LocalizerConfig::default()
-    };
+    robot.localization.min_position_sigma = 0.005;
+    robot.localization.min_heading_sigma_deg = 0.1;
+    robot.localization.scan_heading_sigma_deg = 0.3;
     // A tenth of the benchmark's tolerance in position and a quarter in heading leave a margin for errors of the estimate.
-    robot.control = FollowerConfig {
-        settling: StabilizerConfig {
-            position_tolerance: 0.1 * GOAL_TOLERANCE_M,
-            heading_tolerance: 0.25 * GOAL_TOLERANCE_RAD,
-            ..StabilizerConfig::default()
-        },
-        ..FollowerConfig::default()
-    };
+    robot.control.settling.position_tolerance = 0.1 * GOAL_TOLERANCE_M;
+    robot.control.settling.heading_tolerance = 0.25 * GOAL_TOLERANCE_RAD;
     robot
 }
 
 /// Simulated body of the robot.
-fn body(robot: &RobotConfig) -> Result<SimConfig, Invalid> {
+pub(crate) fn body(robot: &RobotConfig) -> Result<SimConfig, Invalid> {
     let mut config = simulated_body(robot, FaultSchedule::default())?;
     config.has_camera = false;
     config.laser = Some(hokuyo(0.0));

@@ -81,7 +81,7 @@ pub struct RealTimeOutcome {
 /// would grow later: two equally long paths lead past its obstacles.
 ///
 /// # Errors
-/// When the system refuses a thread, or the robot cannot be accepted.
+/// When the system refuses a thread, or the robot is invalid.
 pub fn run(
     request: &RealTimeRequest,
     folder: &OutputFolder,

@@ -2,6 +2,7 @@
 
 mod drive;
 mod driver;
+mod driver_choice;
 mod key_driver;
 mod live_drive;
 mod numbers;
@@ -14,6 +15,7 @@ mod true_map;
 
 pub use drive::{SimDrive, drive_simulator};
 pub use driver::{ScriptDriver, SimDriver, StillDriver, WaypointDriver};
+pub use driver_choice::chosen_driver;
 pub use key_driver::KeyDriver;
 pub use live_drive::LiveDrive;
 pub use numbers::{drive_rows, drive_summary, drive_verdict, recording_hint};

@@ -2,6 +2,7 @@
 
 mod body;
 mod camera_server;
+mod demo;
 mod emulated_robot;
 mod fault_file;
 mod free_start;
@@ -10,6 +11,7 @@ mod scene;
 mod scene_files;
 
 pub use body::{require_free, simulated_body, simulated_real_time_body, time_limit};
+pub use demo::DemoRequest;
 pub use emulated_robot::{EmulatedRobot, EmulationCounts};
 pub use fault_file::read_faults;
 pub use real_time_body::SimulatedRealTimeBody;

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::time::Instant;
 use trundle_app::operator::{FrontEnd, OperatorLink};
-use trundle_app::report::RunNumbers;
+use trundle_app::report::{RunNumbers, state_log};
 use trundle_app::{
     AFTER_ARRIVAL_S, AppError, BestView, FinishedRun, PoseSample, Progress, RecordingCost, RunLog,
     RunRecorder, RunSetup, StateChange, run_on_body, stop,
@@ -115,14 +115,7 @@ pub struct Trial {
 impl Trial {
     /// Changes of state, in order.
     pub fn state_table(&self) -> Table {
-        let row = |change: &StateChange| {
-            let Pose2 { x, y, theta } = change.pose;
-            let place = format!("({x:.2} m, {y:.2} m, {:.0} deg)", theta.to_degrees());
-            vec![format!("{:.1}", change.at), place, change.state.explained(change.transition)]
-        };
-        let title = format!("{}, seed {}", self.name, self.seed);
-        let table = Table::new(&title, ["time, s", "estimated place", "first action"]);
-        self.changes.iter().map(row).fold(table, Table::row).wide()
+        state_log(&format!("{}, seed {}", self.name, self.seed), &self.changes)
     }
 }
 
@@ -262,6 +255,7 @@ fn run_unrecorded(
         view: BestView::default(),
         seconds: start.elapsed().as_secs_f64(),
         recording: RecordingCost::default(),
+        cut: None,
     })
 }
 
@@ -304,6 +298,7 @@ pub(crate) mod fixtures {
             end: RunEnd {
                 state: DriveState::Arrived,
                 is_operated: false,
+                is_of_sensors: false,
                 out_of_time: None,
                 tasks: TaskCounts::default(),
             },
@@ -356,9 +351,7 @@ mod tests {
         let transition = Some(trundle_runtime::TransitionReason::GoalReached);
         trial.changes = vec![StateChange { at: 12.5, state, transition, pose }];
         let html = trundle_viz::Report::new("x").table(trial.state_table()).to_html();
-        assert!(
-            html.contains("1, seed 4") && html.contains("12.5") && html.contains("(1.00 m, 2.00 m, 0 deg)")
-        );
-        assert!(html.contains("arrived: the goal is reached"));
+        assert!(html.contains("1, seed 4") && html.contains("12.5") && html.contains("1.00, 2.00, 0"));
+        assert!(html.contains("<td>arrived</td><td>the goal is reached</td>"), "{html}");
     }
 }

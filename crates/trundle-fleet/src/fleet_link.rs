@@ -50,9 +50,9 @@ impl FleetLink {
         if !is_steered {
             return Err(AppError::input("--mqtt: this run is a replay, which takes no commands"));
         }
-        let password = Password::read(password_file)?;
-        let (name, map_id) = (name.cloned().unwrap_or_default(), map_id.to_owned());
-        let options = FleetOptions { broker, password, name, map_id };
+        let mut options = FleetOptions::new(broker, map_id.to_owned());
+        options.password = Password::read(password_file)?;
+        options.name = name.cloned().unwrap_or_default();
         Ok(Self::start(options, link.operator(), RobotFacts::of(setup)?)?)
     }
 

@@ -16,6 +16,7 @@ const MANUFACTURER: &str = "trundle";
 
 /// Options for joining a broker.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct FleetOptions {
     /// The broker.
     pub broker: BrokerAddress,
@@ -25,6 +26,13 @@ pub struct FleetOptions {
     pub name: RobotName,
     /// The map in messages.
     pub map_id: String,
+}
+
+impl FleetOptions {
+    /// A robot of the default name at a broker without a password.
+    pub fn new(broker: BrokerAddress, map_id: String) -> Self {
+        Self { broker, password: None, name: RobotName::default(), map_id }
+    }
 }
 
 /// A password. Its debug text hides the content.

@@ -7,6 +7,7 @@ use trundle_core::{Invalid, require_in};
 /// Inverse sensor model, classification thresholds and extent of an occupancy map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct MapperConfig {
     /// Side of a cell, m, 0.005 to 1. Smaller cells show more detail and take more memory and time. Default 0.05 (ours).
     pub resolution: f64,

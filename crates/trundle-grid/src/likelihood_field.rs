@@ -63,7 +63,7 @@ impl<'a> LikelihoodField<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{GridCell, LogOddsGrid, Thresholds};
+    use crate::{GridCell, LogOddsGrid};
     use proptest::prelude::*;
 
     /// Map with these occupied cells, each with a hit in its middle.
@@ -77,15 +77,19 @@ mod tests {
         map
     }
 
+    /// The surface points of the cells whose log-odds are above 1.
+    fn occupied(map: &LogOddsGrid) -> impl Fn(GridCell) -> Option<Vector2> {
+        |cell| map.get(cell).filter(|evidence| evidence.log_odds > 1.0)?.hit()
+    }
+
     proptest! {
         /// The likelihood at the centre of a cell equals that of the nearest surface point, found by exhaustive search.
         #[test]
         fn centres_agree_with_brute_force(cells in prop::collection::btree_set((0..20_i32, 0..20_i32), 1..20)) {
             let cells: Vec<_> = cells.into_iter().collect();
-            let thresholds = Thresholds { occupied_above: 1.0, free_below: -1.0 };
             let (resolution, sigma) = (0.1, 0.15);
             let corners = [Vector2::zeros(), Vector2::repeat(2.0)];
-            let points = SurfacePoints::around(&map(&cells), thresholds, resolution, &corners, 0.0).unwrap();
+            let points = SurfacePoints::around(occupied(&map(&cells)), resolution, &corners, 0.0).unwrap();
             prop_assert_eq!(points.iter().count(), cells.len());
             let field = LikelihoodField::new(&points, sigma);
             for (x, y) in (0..20).flat_map(|x| (0..20).map(move |y| (x, y))) {
@@ -104,9 +108,8 @@ mod tests {
             cells in prop::collection::btree_set((0..20_i32, 0..20_i32), 1..30), x in 0..20_i32, y in 0..20_i32, reach in 0..6_i32,
         ) {
             let cells: Vec<_> = cells.into_iter().collect();
-            let thresholds = Thresholds { occupied_above: 1.0, free_below: -1.0 };
             let corners = [Vector2::zeros(), Vector2::repeat(2.0)];
-            let points = SurfacePoints::around(&map(&cells), thresholds, 0.1, &corners, 0.0).unwrap();
+            let points = SurfacePoints::around(occupied(&map(&cells)), 0.1, &corners, 0.0).unwrap();
             let at = GridCell { x, y }.center_cells() * 0.1;
             let expected = cells.iter().filter(|c| (c.0 - x).abs() <= reach && (c.1 - y).abs() <= reach).count();
             prop_assert_eq!(points.near(at, reach).count(), expected);
@@ -118,12 +121,11 @@ mod tests {
         let mut map = map(&[(1, 1), (2, 1)]);
         map.entry(GridCell { x: 1, y: 1 }).log_odds = 0.5;
         map.entry(GridCell { x: 5, y: 5 }).log_odds = 3.0;
-        let thresholds = Thresholds { occupied_above: 1.0, free_below: -1.0 };
         let corners = [Vector2::zeros(), Vector2::repeat(1.0)];
-        let points = SurfacePoints::around(&map, thresholds, 0.1, &corners, 0.2).unwrap();
+        let points = SurfacePoints::around(occupied(&map), 0.1, &corners, 0.2).unwrap();
         assert_eq!(points.iter().count(), 1);
         assert!((points.iter().next().unwrap() - Vector2::new(0.25, 0.15)).norm() < 1e-6);
-        assert!(SurfacePoints::around(&map, thresholds, 0.1, &[], 0.2).is_none());
+        assert!(SurfacePoints::around(occupied(&map), 0.1, &[], 0.2).is_none());
         assert_eq!(LikelihoodField::new(&points, 0.1).at(Vector2::repeat(50.0)), 0.0);
     }
 }

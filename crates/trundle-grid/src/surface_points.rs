@@ -1,7 +1,7 @@
 //! Surface points of the occupied cells of a part of the map.
 
-use crate::{GridCell, LogOddsGrid, Thresholds};
-use trundle_core::{Cell, Vector2};
+use crate::GridCell;
+use trundle_core::Vector2;
 
 /// Surface points of a part of a map: the mean of the hits of each occupied cell, map frame, m.
 #[derive(Debug, Clone)]
@@ -19,10 +19,9 @@ pub struct SurfacePoints {
 
 impl SurfacePoints {
     /// Surface points within `margin` m of the bounding box of `points` (map frame, m); `None` without points. `resolution` is the side of
-    /// a cell of the map, m.
+    /// a cell of the map, m. `surface` is the surface point of a cell, from its lower-left corner, in cells.
     pub fn around(
-        map: &LogOddsGrid,
-        thresholds: Thresholds<f32>,
+        surface: impl Fn(GridCell) -> Option<Vector2>,
         resolution: f64,
         points: &[Vector2],
         margin: f64,
@@ -32,9 +31,7 @@ impl SurfacePoints {
         let low = GridCell::containing((low - Vector2::repeat(margin)) / resolution);
         let high = GridCell::containing((high + Vector2::repeat(margin)) / resolution);
         let site = |cell: GridCell| {
-            let evidence = map.get(cell)?;
-            let within =
-                evidence.hit().filter(|_| thresholds.classify(evidence.log_odds) == Cell::Occupied)?;
+            let within = surface(cell)?;
             Some((Vector2::new(f64::from(cell.x), f64::from(cell.y)) + within) * resolution)
         };
         let row = |y: i32| (low.x..=high.x).map(move |x| GridCell { x, y });

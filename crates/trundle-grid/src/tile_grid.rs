@@ -107,7 +107,7 @@ impl<T: TileData> TileGrid<T> {
         }
     }
 
-    /// Lowest and highest tile of the bounding box of all stored and reached tiles; `None` of an empty grid.
+    /// Lowest and highest tile of the bounding box of all stored and reached tiles; `None` for an empty grid.
     pub fn extent(&self) -> Option<(TileIndex, TileIndex)> {
         self.extent
     }

@@ -3,6 +3,7 @@
 mod depth_scale;
 mod fields;
 mod image_side;
+mod kalibr_yaml;
 mod matrix;
 mod open3d;
 mod ros_lens;
@@ -84,8 +85,8 @@ impl CameraModel {
         })
     }
 
-    /// The camera of a file: trundle's TOML, the YAML of ORB-SLAM2 and 3, of stella_vslam or of ROS's camera_info, or Open3D's JSON. The
-    /// content determines the format.
+    /// The camera of a file: trundle's TOML, the YAML of ORB-SLAM2 and 3, of stella_vslam, of Kalibr, of
+    /// EuRoC or of ROS's camera_info, or Open3D's JSON. The content determines the format.
     ///
     /// The TOML has `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and `depth_scale` (units per metre). The lens `k1`, `k2`, `p1`, `p2`,
     /// `k3` in OpenCV's order default to 0, and `readout` (s) to an unknown time, taken as 0. A file without a depth scale means millimetres, as in ROS.
@@ -138,6 +139,7 @@ fn parse(path: &Path, kind: FileKind, text: &str) -> Result<CameraFields, IoErro
     match kind {
         FileKind::OrbSlamYaml | FileKind::StellaVslamYaml => slam_yaml::parse(path, text),
         FileKind::RosCameraYaml | FileKind::Yaml => ros_yaml::parse(path, text),
+        FileKind::KalibrCameraYaml => kalibr_yaml::parse(path, text),
         FileKind::Open3dCamera | FileKind::Json => open3d::parse(path, text),
         _ => toml_file::parse(path, text),
     }

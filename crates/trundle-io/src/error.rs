@@ -8,6 +8,7 @@ use trundle_core::{Invalid, Stamp};
 
 /// Reason why a file cannot be read, parsed or written: one sentence with the file's name.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum IoError {
     /// The operating system refused.
     #[error("cannot {action} {path}: {reason}", path = path.display(), reason = reason(source))]
@@ -29,7 +30,7 @@ pub enum IoError {
         /// The problem, with the value and its unit.
         problem: String,
     },
-    /// A value of a file cannot be accepted.
+    /// A value of a file is invalid.
     #[error("{path}: {problem}", path = path.display())]
     Field {
         /// The file.
@@ -101,12 +102,25 @@ impl IoError {
         }
     }
 
-    /// An error if `problems` is not empty; the results that could be written are in `folder`.
-    pub(crate) fn incomplete(folder: &Path, problems: Vec<Self>) -> Result<(), Self> {
+    /// Whether the work is done, but a disk did not take all of its results.
+    #[must_use]
+    pub fn is_incomplete(&self) -> bool {
+        match self {
+            Self::Incomplete { .. } => true,
+            Self::System { action, source, .. } => *action == WRITE && is_refusal_of_disk(source),
+            _ => false,
+        }
+    }
+
+    /// An error if `problems` is not empty; `folder` holds the results that could be written.
+    ///
+    /// # Errors
+    /// [`IoError::Incomplete`] with these problems.
+    pub fn incomplete(folder: Option<&Path>, problems: Vec<Self>) -> Result<(), Self> {
         if problems.is_empty() {
             return Ok(());
         }
-        Err(Self::Incomplete { folder: Some(folder.to_owned()), problems })
+        Err(Self::Incomplete { folder: folder.map(Path::to_owned), problems })
     }
 
     /// Results that standard output did not take.
@@ -158,16 +172,46 @@ fn clause(text: &str) -> String {
     if text.is_empty() { String::new() } else { format!("; {text}") }
 }
 
+/// The action of a system's error when results are written.
+const WRITE: &str = "write";
+
+/// Largest number of files that the sentence about incomplete results names. The log names all. Source: ours.
+const MAX_NAMED_FILES: usize = 20;
+
 fn incomplete_text(folder: Option<&Path>, problems: &[IoError]) -> String {
     let first = problems.first().map(ToString::to_string).unwrap_or_default();
-    let more = match problems.len().saturating_sub(1) {
-        0 => String::new(),
-        1 => ", nor one other file".to_owned(),
-        count => format!(", nor {count} other files"),
-    };
+    let mut others: Vec<String> = Vec::new();
+    for problem in problems.iter().skip(1).filter(|other| other.path() != problems[0].path()) {
+        let path = folder
+            .map_or(problem.path(), |folder| problem.path().strip_prefix(folder).unwrap_or(problem.path()));
+        let name = path.display().to_string();
+        others.extend((!others.contains(&name)).then_some(name));
+    }
+    let more = others.len().saturating_sub(MAX_NAMED_FILES);
+    others.truncate(MAX_NAMED_FILES);
+    others.extend((more > 0).then(|| format!("{more} other files")));
+    let others = if others.is_empty() { String::new() } else { format!(", nor {}", others.join(", ")) };
     let rest =
         folder.map_or_else(String::new, |folder| format!("; the other results are in {}", folder.display()));
-    format!("{first}{more}{rest}")
+    format!("{first}{others}{rest}")
+}
+
+/// Whether the disk is full, used up or broken, rather than the name wrong.
+pub(crate) fn is_refusal_of_disk(error: &std::io::Error) -> bool {
+    use ErrorKind::{FileTooLarge, QuotaExceeded, ReadOnlyFilesystem, StorageFull, WriteZero};
+    let kinds = [StorageFull, QuotaExceeded, FileTooLarge, ReadOnlyFilesystem, WriteZero];
+    kinds.contains(&error.kind()) || is_device_error(error)
+}
+
+#[cfg(unix)]
+fn is_device_error(error: &std::io::Error) -> bool {
+    const EIO: i32 = 5;
+    error.raw_os_error() == Some(EIO)
+}
+
+#[cfg(not(unix))]
+fn is_device_error(_error: &std::io::Error) -> bool {
+    false
 }
 
 /// The operating system's error in plain words.
@@ -210,5 +254,26 @@ mod tests {
         let error = IoError::system(Path::new("out/map.pgm"), "write")(ErrorKind::StorageFull.into());
         assert_eq!(error.to_string(), "cannot write out/map.pgm: the disk is full");
         assert_eq!(error.path(), Path::new("out/map.pgm"));
+    }
+
+    #[test]
+    fn results_that_a_disk_refused_at_the_end_are_incomplete_and_a_place_that_cannot_be_made_is_not() {
+        let error = |action, kind: ErrorKind| IoError::system(Path::new("bag.mcap"), action)(kind.into());
+        assert!(error("write", ErrorKind::StorageFull).is_incomplete());
+        assert!(error("write", ErrorKind::FileTooLarge).is_incomplete());
+        assert!(!error("create", ErrorKind::StorageFull).is_incomplete());
+        assert!(!error("write", ErrorKind::PermissionDenied).is_incomplete());
+    }
+
+    #[test]
+    fn each_missing_file_is_named_once() {
+        let problem = |i: usize| IoError::malformed(&Path::new("out").join(i.to_string()), "full");
+        let text = |count: usize| {
+            let problems = (0..count).flat_map(|i| [problem(i), problem(i)]).collect();
+            IoError::Incomplete { folder: Some("out".into()), problems }.to_string()
+        };
+        assert_eq!(text(1), "out/0: full; the other results are in out");
+        assert_eq!(text(3), "out/0: full, nor 1, 2; the other results are in out");
+        assert!(text(30).ends_with(", nor 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 9 other files; the other results are in out"));
     }
 }

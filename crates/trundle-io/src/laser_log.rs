@@ -58,7 +58,7 @@ pub struct LaserLog {
     pub bad_ranges: usize,
     /// The first line, or message, with such a range.
     pub first_bad_range: Option<usize>,
-    /// Range from which on readings counted as no returns, m.
+    /// Smallest range that counted as no return, m.
     pub max_range: Option<f64>,
     /// The reason why the depth images of the scans have no usable depth; `None` if they have, or if the scans are those of a laser.
     pub depth_problem: Option<String>,

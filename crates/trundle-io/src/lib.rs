@@ -36,7 +36,6 @@ mod map;
 mod output;
 mod pgm;
 mod recording;
-mod replace;
 mod ros;
 mod sequence_camera;
 mod stamp_text;
@@ -64,17 +63,16 @@ pub use laser_log::{
     no_overlap_cause, no_return_cause, range_unit_hint,
 };
 pub use map::{
-    GraphFile, KeepOutFile, MAX_CELL_M, MIN_CELL_M, MapDescription, MapFile, MapImage, SpeedFile,
-    annotations_text, map_files, map_pgm, map_picture, map_yaml, picture_size, read_annotations, read_graph,
-    read_keep_out_mask, read_map, read_map_file, read_places, read_speed_mask, write_map, write_map_as,
-    write_speed_mask,
+    GraphFile, KeepOutFile, MAX_CELL_M, MIN_CELL_M, MapDescription, MapFile, MapImage, NamedArea, PictureMap,
+    SpeedFile, annotations_text, areas_text, degrees_hint, map_files, map_pgm, map_picture, map_yaml,
+    picture_size, read_annotations, read_graph, read_keep_out_mask, read_map, read_map_file,
+    read_picture_map, read_places, read_speed_mask, write_map, write_map_as, write_speed_mask,
 };
 pub use output::{
-    CommandOutputs, InputFiles, OutputFile, OutputFolder, abandon_outputs, abandon_unfinished, keep_aside,
-    wait_for_abandonment,
+    CommandOutputs, InputFiles, OutputFile, OutputFolder, RecordingFolder, abandon_outputs,
+    abandon_unfinished, keep_aside, replace_file, require_replaceable, wait_for_abandonment,
 };
 pub use recording::{PoseInFrame, PosesInFrame, RecordedMessage, Recorder, RecordingCut, RecordingReader};
-pub use replace::{replace_file, require_replaceable};
 pub use ros::message as ros_message;
 pub use ros::{
     RosFrame, RosFrames, RosImageTopics, RosSequence, RosSequenceOptions, RosTopics, decode_compressed_depth,

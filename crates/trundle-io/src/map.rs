@@ -1,18 +1,24 @@
 //! Maps in the format of the ROS `map_server`: a picture and a YAML file.
 
 mod annotations;
+mod areas;
+mod degrees;
 mod graph;
 mod mask;
 mod picture;
+mod picture_map;
 mod places;
 mod source;
 mod turned;
 mod yaml;
 
 pub use annotations::{annotations_text, read_annotations};
+pub use areas::{NamedArea, areas_text};
+pub use degrees::degrees_hint;
 pub use graph::{GraphFile, read_graph};
 pub use mask::{KeepOutFile, SpeedFile, read_keep_out_mask, read_speed_mask, write_speed_mask};
 pub use picture::picture_size;
+pub use picture_map::{PictureMap, read_picture_map};
 pub use places::read_places;
 pub use source::MapDescription;
 pub use yaml::{MAX_CELL_M, MIN_CELL_M};
@@ -74,17 +80,27 @@ impl MapDescription {
 
 /// The map from its files.
 fn map_of(source: &MapSource) -> Result<MapFile, IoError> {
-    let cells = source.picture.indices().map(|i| cell(source, i)).collect();
+    let (geometry, cells) = picture_cells(source)?;
     let rank = |cell| match cell {
         Cell::Occupied => 0,
         Cell::Unknown => 1,
         Cell::Free => 2,
     };
-    let (geometry, cells) =
-        turned::straightened(source.geometry()?, cells, source.yaml.yaw, Cell::Unknown, rank)
-            .map_err(IoError::field(&source.yaml_path))?;
+    let (geometry, cells) = turned::straightened(geometry, cells, source.yaml.yaw, Cell::Unknown, rank)
+        .map_err(IoError::field(&source.yaml_path))?;
     let grid = OccupancyGrid::new(geometry, cells).map_err(IoError::field(&source.picture_path))?;
     Ok(MapFile { grid, warnings: warnings(source) })
+}
+
+/// The cells of the picture before its rotation.
+fn picture_cells(source: &MapSource) -> Result<(GridGeometry, Vec<Cell>), IoError> {
+    Ok((source.geometry()?, source.picture.indices().map(|i| cell(source, i)).collect()))
+}
+
+/// The map on the cells of the picture.
+fn picture_grid(source: &MapSource) -> Result<OccupancyGrid, IoError> {
+    let (geometry, cells) = picture_cells(source)?;
+    OccupancyGrid::new(geometry, cells).map_err(IoError::field(&source.picture_path))
 }
 
 /// Cell of pixel `i`.
@@ -94,11 +110,26 @@ fn cell(source: &MapSource, i: usize) -> Cell {
     if is_unknown { Cell::Unknown } else { yaml.cell(picture.values[i], picture.maxval) }
 }
 
-/// Counts the pixels that `map_saver` writes for unknown and this file makes free.
+/// Warnings about pixels that `map_saver` writes for unknown and this file makes free, and about a picture that is resampled.
 fn warnings(source: &MapSource) -> Warnings {
+    let yaml = &source.yaml;
+    let mut warnings = Warnings::default();
+    freed_warning(source, &mut warnings);
+    if turned::is_resampled(yaml.yaw) {
+        let problem = format!(
+            "the picture is turned by the origin's yaw of {} rad and resampled: walls become up to a cell of {} m thicker, so a \
+             narrow gap may close; save the map with a yaw of 0 to avoid this",
+            yaml.yaw, yaml.resolution
+        );
+        warnings.add(&problem, &source.yaml_path.display().to_string());
+    }
+    warnings
+}
+
+/// A warning about pixels that `map_saver` writes for unknown and this file makes free.
+fn freed_warning(source: &MapSource, warnings: &mut Warnings) {
     let MapSource { yaml, picture, .. } = source;
     let freed = picture.values.iter().filter(|&&value| yaml.frees_unknown(value, picture.maxval)).count();
-    let mut warnings = Warnings::default();
     if freed > 0 {
         let free = yaml.free_thresh();
         let problem = format!(
@@ -106,7 +137,6 @@ fn warnings(source: &MapSource) -> Warnings {
         );
         warnings.add(&problem, &source.yaml_path.display().to_string());
     }
-    warnings
 }
 
 /// The format of a map's picture.
@@ -244,7 +274,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(32))]
         #[test]
         fn a_map_comes_back_the_same(
-            width in 1usize..20, height in 1usize..20, resolution in 1e-3..10f64,
+            width in 1usize..20, height in 1usize..20, resolution in 1e-3..2f64,
             x in prop::num::f64::NORMAL, y in -1e3..1e3f64, seed in any::<u64>(),
         ) {
             // Any origin; the constructor refuses one that the grid cannot hold.
@@ -281,6 +311,23 @@ mod tests {
         std::fs::write(&path, map_yaml(&grid, "nowhere.pgm")).unwrap();
         let error = read_map(&path).unwrap_err().to_string();
         assert!(error.contains("m.yaml: image is '") && error.contains("nowhere.pgm'"), "{error}");
+    }
+
+    #[test]
+    fn a_picture_that_is_resampled_is_warned_of() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("m.yaml");
+        let grid = OccupancyGrid::from_ascii(0.05, "#?.?").unwrap();
+        std::fs::write(dir.path().join("m.pgm"), map_pgm(&grid)).unwrap();
+        for (yaw, expected) in [("0.0", 0), ("-1.5707963", 0), ("0.3", 1), ("0.001", 1)] {
+            let yaml = map_yaml(&grid, "m.pgm").replace(", 0.0]", &format!(", {yaw}]"));
+            std::fs::write(&path, yaml).unwrap();
+            let warnings = read_map_file(&path).unwrap().warnings;
+            assert_eq!(warnings.iter().count(), expected, "{yaw}");
+            assert!(warnings.iter().all(|warning| {
+                warning.to_string().contains("resampled: walls become up to a cell of 0.05 m")
+            }));
+        }
     }
 
     #[test]

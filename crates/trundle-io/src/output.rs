@@ -6,6 +6,8 @@ mod inputs;
 mod marker;
 mod outputs;
 mod place;
+mod recording_folder;
+mod replace;
 mod scratch;
 mod single_file;
 #[cfg(test)]
@@ -16,9 +18,12 @@ mod writable;
 
 pub use inputs::InputFiles;
 pub use outputs::CommandOutputs;
+pub use recording_folder::RecordingFolder;
+pub use replace::{replace_file, require_replaceable};
 pub use single_file::{OutputFile, keep_aside};
 pub use unfinished::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
 
+use crate::error::is_refusal_of_disk;
 use crate::{IoError, Recorder};
 use file_identity::is_on_other_disk;
 use marker::{MARKER_FILE, RunMarker};
@@ -44,8 +49,6 @@ pub struct OutputFolder {
     scratch: Scratch,
     /// Folders above the target that did not exist before, the innermost first.
     made: Vec<PathBuf>,
-    /// Hidden folders of killed runs into the same place, which were removed.
-    swept: Vec<PathBuf>,
     /// Files that the disk did not take.
     unwritten: Mutex<Vec<IoError>>,
     /// Name and content of the file that the commit writes.
@@ -69,11 +72,10 @@ impl OutputFolder {
         let place = OutputPlace::check(target, inputs)?;
         let beside = parent(&place.real);
         let mut made = missing_above(beside);
-        let swept = scratch::sweep(beside, &place.real);
         let scratch = fs::create_dir_all(beside).map_err(IoError::system(target, "create"));
         let scratch = scratch.and_then(|()| scratch_for(&place));
         let scratch = scratch.inspect_err(|_| remove_empty(&mut made))?;
-        Ok(Self { place, scratch, made, swept, unwritten: Mutex::default(), last: None })
+        Ok(Self { place, scratch, made, unwritten: Mutex::default(), last: None })
     }
 
     /// Refuses a folder of results that cannot be replaced without a loss.
@@ -134,11 +136,6 @@ impl OutputFolder {
         &self.place.target
     }
 
-    /// Hidden folders that killed runs into the same place had left, and that were removed.
-    pub fn swept(&self) -> &[PathBuf] {
-        &self.swept
-    }
-
     /// Path of the file `name` before the commit, for writers that need a path. The caller must create subfolders.
     pub fn staged(&self, name: &str) -> PathBuf {
         self.scratch.stage().join(name)
@@ -173,9 +170,15 @@ impl OutputFolder {
         })
     }
 
-    /// Records a missing or incomplete file, which [`OutputFolder::commit`] reports.
+    /// Records a missing or incomplete file, which [`OutputFolder::commit`] reports and the log names.
     pub fn leave_out(&self, problem: IoError) {
+        tracing::info!("{problem}");
         self.unwritten.lock().unwrap_or_else(PoisonError::into_inner).push(problem);
+    }
+
+    /// Whether the file `name` is written so far.
+    pub(crate) fn holds(&self, name: &str) -> bool {
+        self.staged(name).is_file()
     }
 
     /// Whether the disk has refused a file.
@@ -188,9 +191,12 @@ impl OutputFolder {
     /// # Errors
     /// When the file cannot be created.
     pub fn recorder(&self, name: &str) -> Result<Recorder<BufWriter<File>>, IoError> {
-        let target = self.target().join(name);
-        let file = File::create(self.staged(name)).map_err(IoError::system(&target, "create"))?;
-        Recorder::new(BufWriter::with_capacity(1 << 20, file), &target)
+        self.recordings().recorder(name)
+    }
+
+    /// This folder for recordings that another thread starts; finish them before the commit.
+    pub fn recordings(&self) -> RecordingFolder {
+        RecordingFolder::new(self.scratch.stage(), self.target().to_owned())
     }
 
     /// Starts a ROS 2 bag as the file `name`; finish it before the commit.
@@ -217,7 +223,7 @@ impl OutputFolder {
         let filled = unfinished::complete(|| self.place.fill(&self.scratch));
         filled.map_err(|problem| self.rescued(problem))?;
         let unwritten = std::mem::take(&mut self.unwritten).into_inner();
-        IoError::incomplete(self.target(), unwritten.unwrap_or_else(PoisonError::into_inner))?;
+        IoError::incomplete(Some(self.target()), unwritten.unwrap_or_else(PoisonError::into_inner))?;
         Ok(self.target().to_owned())
     }
 
@@ -243,7 +249,7 @@ impl OutputFolder {
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        self.scratch.remove();
+        self.scratch.remove(); // before the folders above it
         remove_empty(&mut self.made);
     }
 }
@@ -254,7 +260,7 @@ fn scratch_for(place: &OutputPlace) -> Result<Scratch, IoError> {
     let failed = IoError::system(&place.target, "create");
     let problem = match is_on_other_disk(beside, &place.real) {
         true => "it is a disk of its own".to_owned(),
-        false => match Scratch::create(beside, &place.real) {
+        false => match Scratch::create(beside, &place.real).and_then(Scratch::with_reserve) {
             Err(error) if is_protected(&error) && place.real.is_dir() => {
                 format!("{}: {error}", beside.display())
             }
@@ -266,29 +272,11 @@ fn scratch_for(place: &OutputPlace) -> Result<Scratch, IoError> {
             format!("the last run cannot be kept beside this folder ({problem}); name a folder in it");
         return Err(IoError::malformed(&place.target, problem));
     }
-    Scratch::create(&place.real, &place.real).map_err(failed)
+    Scratch::create(&place.real, &place.real).and_then(Scratch::with_reserve).map_err(failed)
 }
 
 fn is_protected(error: &std::io::Error) -> bool {
     matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem)
-}
-
-/// Whether the disk is full, used up or broken, rather than the name wrong.
-fn is_refusal_of_disk(error: &std::io::Error) -> bool {
-    use ErrorKind::{FileTooLarge, QuotaExceeded, ReadOnlyFilesystem, StorageFull, WriteZero};
-    let kinds = [StorageFull, QuotaExceeded, FileTooLarge, ReadOnlyFilesystem, WriteZero];
-    kinds.contains(&error.kind()) || is_device_error(error)
-}
-
-#[cfg(unix)]
-fn is_device_error(error: &std::io::Error) -> bool {
-    const EIO: i32 = 5;
-    error.raw_os_error() == Some(EIO)
-}
-
-#[cfg(not(unix))]
-fn is_device_error(_error: &std::io::Error) -> bool {
-    false
 }
 
 fn parent(path: &Path) -> &Path {

@@ -1,9 +1,11 @@
 //! Recordings of a run: MCAP with messages of ROS 2 in CDR, which RViz, Foxglove, Rerun and rosbags open without conversion. Recordings of
 //! JSON, as earlier versions wrote them, are read too.
 
+mod channels;
 mod chunk_decoder;
 mod container;
 mod cut;
+mod damage;
 mod images;
 mod messages;
 mod poses;
@@ -14,11 +16,12 @@ mod stream;
 mod time;
 mod unpacked;
 
+pub(crate) use channels::{Encoding, RawMessage};
+pub use cut::RecordingCut;
 pub use poses::{PoseInFrame, PosesInFrame};
 pub use reader::{RecordedMessage, RecordingReader};
 pub use recorder::Recorder;
-pub use stream::RecordingCut;
-pub(crate) use stream::{Encoding, MessageStream, RawMessage};
+pub(crate) use stream::MessageStream;
 
 /// The name of the writer in the header of a recording.
 pub(crate) const LIBRARY: &str = "trundle";

@@ -29,7 +29,7 @@ impl SequenceCamera {
     /// content, else freiburg1 with a warning.
     ///
     /// # Errors
-    /// When the requested camera, or the folder's file, cannot be accepted.
+    /// When the requested camera, or the folder's file, is invalid.
     pub fn choose(asked: Option<&str>, dir: &Path) -> Result<Self, IoError> {
         if let Some(name) = asked {
             return Self::named(name);
@@ -87,6 +87,7 @@ fn camera_files(dir: &Path) -> Vec<PathBuf> {
             FileKind::OrbSlamYaml,
             FileKind::StellaVslamYaml,
             FileKind::RosCameraYaml,
+            FileKind::KalibrCameraYaml,
             FileKind::Open3dCamera,
         ];
         path.is_file() && Expected::Camera.check(path).is_ok_and(|kind| cameras.contains(&kind))

@@ -11,12 +11,12 @@ const MIN_MILLISECONDS: f64 = 1e11;
 const MIN_MICROSECONDS: f64 = 1e14;
 /// Smallest number that is read as nanoseconds. As microseconds it would be the year 5138. Source: ours.
 const MIN_NANOSECONDS: f64 = 1e17;
-/// Median step between whole-numbered stamps from which their unit is milliseconds, not seconds \[s\]. Images and poses 5 s apart are not a
+/// Smallest median step between whole-numbered stamps at which their unit is milliseconds, not seconds \[s\]. Images and poses 5 s apart are not a
 /// sequence. Source: ours.
 const MIN_STEP_MILLISECONDS: f64 = 5.0;
-/// Median step between whole-numbered stamps from which their unit is microseconds, not milliseconds \[ms\]. Source: ours.
+/// Smallest median step between whole-numbered stamps at which their unit is microseconds, not milliseconds \[ms\]. Source: ours.
 const MIN_STEP_MICROSECONDS: f64 = 1e3;
-/// Median step between whole-numbered stamps from which their unit is nanoseconds, not microseconds \[us\]. Source: ours.
+/// Smallest median step between whole-numbered stamps at which their unit is nanoseconds, not microseconds \[us\]. Source: ours.
 const MIN_STEP_NANOSECONDS: f64 = 1e6;
 
 /// The unit of a file's stamps.

@@ -2,7 +2,9 @@
 
 use crate::IoError;
 use crate::excerpt::excerpt;
+use crate::files::is_decimal_comma;
 use serde::Deserialize;
+use serde_saphyr::{Error, NonFiniteFloatPolicy, Options};
 use std::collections::BTreeMap;
 use std::path::Path;
 use trundle_core::Invalid;
@@ -31,19 +33,8 @@ impl<'a> YamlDocument<'a> {
     pub(crate) fn parse(path: &'a Path, text: &'a str) -> Result<Self, IoError> {
         refuse_repeated_key(path, text)?;
         let plain = first_document(text);
-        let root = serde_saphyr::from_str(&plain).map_err(|error| {
-            let line = error.without_snippet().location().and_then(|at| usize::try_from(at.line()).ok());
-            let content =
-                |line: usize| excerpt(text.lines().nth(line.saturating_sub(1)).unwrap_or_default().trim());
-            match line {
-                Some(line) if line > 0 => IoError::line(
-                    path,
-                    line,
-                    format!("'{}' is not valid YAML, expected `key: value`", content(line)),
-                ),
-                _ => IoError::malformed(path, "no valid YAML, expected lines of `key: value`"),
-            }
-        })?;
+        let root = serde_saphyr::from_str_with_options(&plain, options())
+            .map_err(|error| syntax_error(path, text, &error))?;
         Ok(Self { path, text, root })
     }
 
@@ -142,11 +133,6 @@ fn words(value: &YamlValue) -> String {
     }
 }
 
-fn is_decimal_comma(text: &str) -> bool {
-    let parts: Vec<&str> = text.split(',').collect();
-    matches!(parts[..], [whole, part] if !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit()) && whole.trim_start_matches('-').bytes().all(|b| b.is_ascii_digit()))
-}
-
 /// The key of a line `key: value`.
 fn key_of(line: &str) -> Option<&str> {
     let (key, rest) = line.split_once(':')?;
@@ -183,18 +169,48 @@ fn first_document(text: &str) -> String {
         let is_passed_over = is_mark || line.starts_with("%YAML");
         is_begun |= !is_passed_over && !line.trim().is_empty() && !line.starts_with('#');
         if !is_passed_over {
-            plain.push_str(&quoted(&line.replace("!!opencv-matrix", "")));
+            plain.push_str(&line.replace("!!opencv-matrix", ""));
         }
         plain.push('\n');
     }
     plain
 }
 
-/// The line with a value that is not a finite number put in quotes, which makes the error name its key.
-fn quoted(line: &str) -> String {
-    let value = line.split_once(": ").map_or("", |(_, value)| value.trim());
-    let is_infinite = [".nan", ".inf", "-.inf", "+.inf"].iter().any(|word| value.eq_ignore_ascii_case(word));
-    if is_infinite { line.replace(value, &format!("'{value}'")) } else { line.to_owned() }
+/// Options of the parser: a number that is not finite is read as its text, which makes the error name its key.
+fn options() -> Options {
+    serde_saphyr::options! { non_finite_float_policy: NonFiniteFloatPolicy::AsString }
+}
+
+/// The parser's error in our words, with the line of the file.
+fn syntax_error(path: &Path, text: &str, error: &Error) -> IoError {
+    let error = error.without_snippet();
+    let line = error.location().and_then(|at| usize::try_from(at.line()).ok()).filter(|line| *line > 0);
+    let Some(line) = line else {
+        return IoError::malformed(path, "no valid YAML, expected lines of `key: value`");
+    };
+    // The parser may name the line before a tab.
+    let lines = text.lines().enumerate().skip(line - 1).filter(|(_, content)| !content.trim().is_empty());
+    if let Some((i, _)) = lines.take(2).find(|(_, content)| is_indented_by_tab(content)) {
+        return IoError::line(path, i + 1, "the line is indented by a tab, expected spaces");
+    }
+    let content = text.lines().nth(line - 1).unwrap_or_default();
+    let problem = match error {
+        Error::DuplicateMappingKey { key: Some(key), .. } => {
+            format!("{} is there a second time in its table; expected once", excerpt(key))
+        }
+        Error::UnknownAnchor { .. } => {
+            format!(
+                "'{}' refers to an anchor that is not defined before, expected `&NAME`",
+                excerpt(content.trim())
+            )
+        }
+        _ => format!("'{}' is not valid YAML, expected `key: value`", excerpt(content.trim())),
+    };
+    IoError::line(path, line, problem)
+}
+
+fn is_indented_by_tab(line: &str) -> bool {
+    line.chars().take_while(|c| c.is_whitespace()).any(|c| c == '\t')
 }
 
 #[cfg(test)]
@@ -231,6 +247,29 @@ mod tests {
             size("size: 1\na: 2\nsize: 3\n"),
             "a.yaml, line 3: size is there a second time, the first in line 1; expected once"
         );
+        assert_eq!(size("size: [.nan, 1]\n"), "a.yaml, line 1: size is a list of 2, expected a number (m)");
+        assert_eq!(size("size: .inf\n"), "a.yaml, line 1: size is '.inf', expected a number (m)");
+        assert_eq!(
+            size("%YAML:1.0\na:\n  b: 1\n  b: 2\n"),
+            "a.yaml, line 4: b is there a second time in its table; expected once"
+        );
+        assert_eq!(
+            size("a: *b\n"),
+            "a.yaml, line 1: 'a: *b' refers to an anchor that is not defined before, expected `&NAME`"
+        );
+        assert_eq!(size("a:\n\tb: 1\n"), "a.yaml, line 2: the line is indented by a tab, expected spaces");
+        for text in
+            ["a:\n  b: 1\n\tc: 2\n", "a: 1\n# note\n\tb: 2\n", "a:\n  - 1\n\t- 2\n", "a: 1\n\n\tsize: 2\n"]
+        {
+            assert_eq!(
+                size(text),
+                "a.yaml, line 3: the line is indented by a tab, expected spaces",
+                "{text}"
+            );
+        }
+        assert_eq!(with("a: &x [1, 2]\nb: *x\n", |d| d.numbers("b", "two")), Ok(vec![1.0, 2.0]));
+        let list = |text: &str| with(text, |d| d.numbers("size", "two numbers (m)")).unwrap_err();
+        assert_eq!(list("size: [1, -.inf]\n"), "a.yaml, line 1: size is '-.inf', expected two numbers (m)");
         for text in ["{", "a: [1\n", "- a\n"] {
             let problem = size(text);
             assert!(problem.contains("not valid YAML"), "{problem}");

@@ -10,9 +10,9 @@ use subtle::{Choice, ConstantTimeEq};
 /// Permissions of a viewer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
-    /// Look and drive.
+    /// View the run, and drive the robot.
     Drive,
-    /// Look.
+    /// View the run.
     View,
 }
 

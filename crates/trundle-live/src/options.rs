@@ -5,6 +5,7 @@ use trundle_app::operator::MapFolder;
 
 /// Options of the live page.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct LiveOptions {
     /// Address of the page.
     pub address: LiveAddress,
@@ -14,4 +15,16 @@ pub struct LiveOptions {
     pub is_steered: bool,
     /// Maps that may be loaded.
     pub maps: Option<MapFolder>,
+}
+
+impl LiveOptions {
+    /// A page at `address`.
+    pub const fn new(
+        address: LiveAddress,
+        tokens: Tokens,
+        is_steered: bool,
+        maps: Option<MapFolder>,
+    ) -> Self {
+        Self { address, tokens, is_steered, maps }
+    }
 }

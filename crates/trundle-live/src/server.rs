@@ -152,7 +152,7 @@ async fn say_goodbye(state: &PageState) {
     _ = tokio::time::timeout(GOODBYE_TIMEOUT, all_gone).await;
 }
 
-/// Looks at the run from time to time, also without viewers.
+/// Records the states of the run periodically, also without viewers.
 async fn keep_history(state: &PageState) {
     let mut ticks = tokio::time::interval(HISTORY_PERIOD);
     ticks.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);

@@ -41,7 +41,8 @@ fn report(name: &str, mut times: Vec<f64>) {
 
 fn main() {
     let drive = Building::rooms().drive(1);
-    let config = MapperConfig { blind_range: 0.0, ..MapperConfig::default() };
+    let mut config = MapperConfig::default();
+    config.blind_range = 0.0;
     let mut mapper = LiveMapper::new(config).unwrap();
     let (mut inserts, mut shown) = (Vec::new(), Vec::new());
     // Forth and back for one hour.

@@ -19,7 +19,8 @@ fn main() {
     {
         for seed in 1..=seeds {
             let drive = building.drive(seed);
-            let config = ParticleConfig { particles, ..ParticleConfig::default() };
+            let mut config = ParticleConfig::default();
+            config.particles = particles;
             let mut mapper = ParticleMapper::new(config, seed).unwrap();
             let (mut slips, mut bends, mut stamps) = (0, 0, Vec::new());
             for (odom, scan) in drive.odom.iter().zip(&drive.scans) {

@@ -2,9 +2,10 @@
 //!
 //! - [`DepthScanner`]: one depth image in, one laser-like [`trundle_core::Scan`] out (the robot's height band, docs/methods.md A2).
 //! - [`GridMapper`]: scans at known poses in, a log-odds occupancy grid out (docs/methods.md A3 with one particle).
+//! - [`map_edit`]: finished maps cropped, rotated, compared, merged, and divided into rooms.
 //! - [`ScanMatcher`]: the pose at which a scan fits the grid best, its covariance, and the directions that the scan does not determine.
 //!
-//! The parts of a particle filter are types of their own. The map of one particle is a [`LogOddsGrid`]: its tiles are shared until
+//! The parts of a particle filter are separate types. The map of one particle is a [`LogOddsGrid`]: its tiles are shared until
 //! written, so a clone is cheap. The evidence of a scan does not depend on the owner of the map.
 //!
 //! ```
@@ -28,6 +29,7 @@ mod filter_models;
 mod global_localization;
 mod grid_mapper;
 mod loop_closing;
+pub mod map_edit;
 mod particle_config;
 mod persist;
 mod pose_graph;
@@ -43,5 +45,5 @@ pub use particle_config::{MotionConfig, ParticleConfig, PosePriorConfig};
 pub use persist::FilterFileError;
 pub use rbpf::{MappingPause, ParticleMapper, Processed, Refusal, ScanUpdate, propagate_trajectory};
 pub use scan_log::{LiveMapper, Redrawn};
-pub use scan_match::{Lost, ScanMatch, ScanMatchConfig, ScanMatcher};
+pub use scan_match::{Lost, MatchedMap, ScanMatch, ScanMatchConfig, ScanMatcher};
 pub use trundle_grid::{Evidence, GridCell, LogOddsGrid, MapperConfig, RayCells, ray_cells};

@@ -7,6 +7,7 @@ use trundle_grid::MapperConfig;
 /// The settings of [`crate::ParticleMapper`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ParticleConfig {
     /// Number of particles, 1 to 1000. More close longer loops; time and memory grow in proportion. Default 30 (\[Grisetti07\] uses 15 to
     /// 80).
@@ -57,9 +58,12 @@ pub struct ParticleConfig {
 
 impl Default for ParticleConfig {
     fn default() -> Self {
+        let mut map = MapperConfig::default();
+        map.max_range = 80.0;
+        map.blind_range = 0.0;
         Self {
             particles: 30,
-            map: MapperConfig { max_range: 80.0, blind_range: 0.0, ..MapperConfig::default() },
+            map,
             motion: MotionConfig::default(),
             pose_prior: None,
             move_gate: 0.3,
@@ -113,6 +117,7 @@ impl ParticleConfig {
 /// One sigma of odometry without drift.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct PosePriorConfig {
     /// Sigma of the position along each axis, m, 0.001 to 1. Default 0.01: trundle's SLAM has errors of 0.2 to 1.2 cm (docs/results.md).
     pub shift: f64,
@@ -138,6 +143,7 @@ impl PosePriorConfig {
 /// mappers: cheap wheels on tiles and carpets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct MotionConfig {
     /// Position error per distance, m/m, 0 to 2. Default 0.2.
     pub shift_per_metre: f64,

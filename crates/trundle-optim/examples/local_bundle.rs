@@ -21,7 +21,9 @@ fn main() {
     let runs: usize = std::env::args().nth(1).map_or(50, |n| n.parse().unwrap());
     let problem = problem();
     // Exactly four steps, independent of the gain.
-    let config = BundleConfig { steps: 4, converged: 1e-300, ..BundleConfig::default() };
+    let mut config = BundleConfig::default();
+    config.steps = 4;
+    config.converged = 1e-300;
     let mut solver = BundleSolver::default();
     let mut times: Vec<f64> = (0..runs)
         .map(|_| {

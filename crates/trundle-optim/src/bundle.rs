@@ -8,14 +8,16 @@ use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_positive};
 /// Iteration of [`BundleProblem`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct BundleConfig {
-    /// Maximum number of steps of one bundle adjustment, 1 or more. Default 10; in `slam.mapping.bundle` 5.
+    /// Maximum number of steps of one bundle adjustment, 1 or more. Default 10; in `slam.mapping.bundle` 5 (ours).
     pub steps: usize,
     /// Relative decrease of the cost below which the adjustment has converged, above 0. Default 1e-4: a local map is refined again soon.
     pub converged: f64,
     /// Levenberg-Marquardt damping at the start, relative to the diagonal, above 0. Default 1e-4 (ours).
     pub damping: f64,
-    /// Whether the covariances of the poses are computed at the end, at the cost of one or two steps. Default false.
+    /// Whether the covariances of the poses are computed at the end, at the cost of one or two steps. Default false (ours): only
+    /// an adjustment of the whole map needs them.
     pub covariances: bool,
 }
 

@@ -10,6 +10,7 @@ use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_positive};
 /// Iteration of [`PoseProblem`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct PoseConfig {
     /// Number of rounds of optimisation and classification of inliers, 1 or more. Default 4 \[MurArtal17\].
     pub rounds: usize,

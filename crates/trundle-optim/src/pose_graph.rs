@@ -8,6 +8,7 @@ use trundle_core::{Invalid, Pose3, Vector3, require_positive};
 /// Iteration of [`PoseGraph`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct PoseGraphConfig {
     /// Maximum number of steps of the pose graph, 1 or more. Default 20 \[MurArtal17\].
     pub steps: usize,

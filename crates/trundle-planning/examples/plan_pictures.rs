@@ -257,7 +257,8 @@ fn outline() {
     let corners =
         [(0.5, 0.2), (-0.1, 0.2), (-0.1, -0.2), (0.5, -0.2)].map(|(x, y)| Vector2::new(x, y)).to_vec();
     let footprint = Footprint::polygon(corners.clone()).unwrap();
-    let config = PlannerConfig { beyond: 0.0, ..PlannerConfig::default() };
+    let mut config = PlannerConfig::default();
+    config.beyond = 0.0;
     let mut planner =
         Planner::new(config, &footprint, DriveLimits::KOBUKI, DifferentialDrive::KOBUKI).unwrap();
     let (start, goal) = (Pose2::new(0.7, 0.7, 1.3), Pose2::new(3.7, 1.1, -2.0));

@@ -11,6 +11,7 @@ use trundle_grid::UnknownIs;
 /// Parameters of the planner.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct PlannerConfig {
     /// Treatment of unknown space in plans. Default free: an exploring robot must enter unknown space.
     pub unknown: UnknownIs,

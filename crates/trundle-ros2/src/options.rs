@@ -6,6 +6,7 @@ use crate::outputs::FrameNames;
 
 /// ROS 2 options of a program.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Ros2Options {
     /// Namespace, names, domain, networks.
     pub node: NodeSettings,
@@ -33,7 +34,7 @@ impl Ros2Options {
     ) -> Result<Self, Ros2Error> {
         let read = RosArguments::parse(name, arguments)?;
         let mut options = Self {
-            node: NodeSettings { names: Names::of_node(name), domain: domain_id(domain)?, networks },
+            node: NodeSettings::new(Names::of_node(name), domain_id(domain)?, networks),
             frames: FrameNames::default(),
             use_sim_time: false,
             stamped_commands: true,

@@ -135,7 +135,7 @@ fn observer(
     clock: RosClock,
 ) -> Result<EventObserver, Ros2Error> {
     let (frames, stamped_commands) = (options.frames.clone(), options.stamped_commands);
-    let settings = ServerSettings { frames, stamped_commands, raw_images: false };
+    let settings = ServerSettings::new(frames, stamped_commands);
     let topics = Mutex::new(SensorTopics::new(node, &settings, robot.camera, robot.drive)?);
     Ok(Arc::new(move |event: &SensorEvent| {
         let at = clock.to_ros(event.stamp());

@@ -16,18 +16,18 @@ pub(crate) fn ahead_of(footprint: &Footprint) -> Vec<Vector2> {
         .map(|deg| f64::from(deg).to_radians());
     let point = |bearing: f64| {
         let direction = Vector2::new(bearing.cos(), bearing.sin());
-        direction * (way_out(footprint, direction) + CONTACT_POINT_OFFSET_M)
+        direction * (distance_to_outline(footprint, direction) + CONTACT_POINT_OFFSET_M)
     };
     bearings.map(point).collect()
 }
 
 /// Distance from the base's origin to the front of the outline, m.
 pub(crate) fn front_of(footprint: &Footprint) -> f64 {
-    way_out(footprint, Vector2::new(1.0, 0.0))
+    distance_to_outline(footprint, Vector2::new(1.0, 0.0))
 }
 
 /// Distance from the base's origin to the outline in a direction, m.
-fn way_out(footprint: &Footprint, direction: Vector2) -> f64 {
+fn distance_to_outline(footprint: &Footprint, direction: Vector2) -> f64 {
     match footprint {
         Footprint::Disc { radius } => *radius,
         Footprint::Polygon { corners } => {

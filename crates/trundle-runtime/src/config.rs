@@ -26,7 +26,7 @@ pub struct RobotConfig {
     /// Corners `[x, y]` of a convex outline in place of the disc, base frame, m. Default none: the disc.
     #[serde(deserialize_with = "corners")]
     pub footprint: Option<Vec<[f64; 2]>>,
-    /// Sensor for mapping and for safety stops. Default depth_camera.
+    /// Sensor for mapping and for safety stops. Default depth_camera: the sensor of \[Li18\].
     pub sight: RangeSource,
     /// Whether the beams of a laser scan are corrected by the odometry for the motion during the sweep. The laser must report the times of
     /// its beams. Default false: the effect on the robot was not measured.
@@ -40,7 +40,7 @@ pub struct RobotConfig {
     /// Pose of the camera on the base.
     pub mount: CameraMount,
     /// Delay of the image stamps: stamp minus time of exposure, s, -1 to 1. A run subtracts it from the stamps, besides the delay reported
-    /// by the camera's driver. `trundle calibrate delay` measures it. Default 0.
+    /// by the camera's driver. `trundle calibrate delay` measures it. Default 0: the stamp is the time of exposure.
     pub image_delay: f64,
     /// Rates of the stages.
     pub schedule: Schedule,
@@ -126,7 +126,7 @@ impl Default for RobotConfig {
 
 impl RobotConfig {
     /// Refuses a base with a top speed above the odometry's limit: at full speed all readings would be rejected.
-    pub(crate) fn require_believable_speeds(&self) -> Result<(), Invalid> {
+    pub(crate) fn require_plausible_speeds(&self) -> Result<(), Invalid> {
         let min = self.limits.wheel_speed;
         if self.odometry.max_speed < min {
             let expected = format!("limits.wheel_speed or more, {min} m/s");

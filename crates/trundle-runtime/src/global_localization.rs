@@ -3,7 +3,7 @@
 use crate::{config::RobotConfig, range_source::RangeSource};
 use nalgebra::Matrix3;
 use trundle_core::{Invalid, OccupancyGrid, Pose2, Scan, Stamp};
-use trundle_mapping::{Localized, MapLocalizer, MapperConfig, ParticleConfig};
+use trundle_mapping::{Localized, MapLocalizer, ParticleConfig};
 
 /// Global localization by scans, for a robot with unknown pose whose camera recognises no place.
 ///
@@ -59,14 +59,20 @@ const MIN_RANGE_SIGMA_M: f64 = 0.01;
 impl GlobalLocalization {
     /// A localization without a search.
     pub(crate) fn new(config: &RobotConfig, blind_range: f64) -> Result<Self, Invalid> {
-        let map = MapperConfig { blind_range, ..config.mapping.clone() };
-        let laser = ParticleConfig { map, wait_gate: MAX_STANDING_GAP_S, ..ParticleConfig::default() };
+        let mut map = config.mapping.clone();
+        map.blind_range = blind_range;
+        let mut laser = ParticleConfig::default();
+        laser.map = map;
+        laser.wait_gate = MAX_STANDING_GAP_S;
         let config = match config.sight {
             RangeSource::Laser => laser,
             RangeSource::DepthCamera => {
                 let range_noise_growth = config.scan.noise_growth;
                 let range_noise = config.scan.noise_base.max(MIN_RANGE_SIGMA_M);
-                ParticleConfig { range_noise, range_noise_growth, ..laser }
+                let mut config = laser;
+                config.range_noise = range_noise;
+                config.range_noise_growth = range_noise_growth;
+                config
             }
         };
         Ok(Self { config: config.validated()?, searches: 0, search: Search::None })

@@ -26,7 +26,8 @@ use trundle_docking::{
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct GoalApproachConfig {
-    /// Whether turns and straight moves may replace the path near the goal. Default true.
+    /// Whether turns and straight moves may replace the path near the goal. Default true (ours): a goal between obstacles may have no other
+    /// path.
     pub enabled: bool,
     /// Distance from the goal within which turns and straight moves may replace a path that is missing or held by the safety monitor, m,
     /// 0.05 to 5. Default 0.6 (ours).
@@ -49,19 +50,20 @@ pub struct GoalApproachConfig {
 
 impl Default for GoalApproachConfig {
     fn default() -> Self {
+        let mut planner = DockingConfig::default();
+        planner.margin = 0.05;
+        planner.max_work = 5_000_000;
+        planner.plan_work = 20_000_000;
+        let mut positioner = PositionerConfig::default();
+        positioner.step_work = 60_000;
         Self {
             enabled: true,
             near: 0.6,
             arc_margin: 0.02,
             time_limit: 120.0,
             max_stops: 10,
-            planner: DockingConfig {
-                margin: 0.05,
-                max_work: 5_000_000,
-                plan_work: 20_000_000,
-                ..DockingConfig::default()
-            },
-            positioner: PositionerConfig { step_work: 60_000, ..PositionerConfig::default() },
+            planner,
+            positioner,
         }
     }
 }

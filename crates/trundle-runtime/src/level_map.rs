@@ -2,7 +2,9 @@
 
 use crate::{camera_mount::CameraMount, schedule::Ticker};
 use std::collections::BTreeMap;
-use trundle_core::{Invalid, OccupancyGrid, PinholeCamera, Pose2, Pose3, RgbdImage, Scan, Stamp, Vector3};
+use trundle_core::{
+    Hypotenuse, Invalid, OccupancyGrid, PinholeCamera, Pose2, Pose3, RgbdImage, Scan, Stamp, Vector3,
+};
 use trundle_mapping::{DepthScanConfig, DepthScanner, GridMapper, MapperConfig};
 
 /// A floor map of a camera that moves freely, hand-held or on a robot.
@@ -106,7 +108,7 @@ const MIN_AXIS_TILT_DEG: f64 = 20.0;
 #[must_use]
 pub fn base_below(level_from_camera: &Pose3) -> Option<Pose2> {
     let axis = level_from_camera.rotate(Vector3::z());
-    let flat = axis.x.hypot(axis.y);
+    let flat = axis.x.hypotenuse(axis.y);
     let at = level_from_camera.translation;
     (flat > MIN_AXIS_TILT_DEG.to_radians().sin()).then(|| Pose2::new(at.x, at.y, axis.y.atan2(axis.x)))
 }

@@ -63,7 +63,7 @@ pub enum Reason {
         /// Largest bound that the goal allows.
         allowed: PoseBound,
     },
-    /// The robot is at its goal by its estimate, but scans contradict the odometry on the way, and nothing has confirmed the pose since.
+    /// The robot is at its goal by its estimate, but scans contradict the odometry during the drive, and nothing has confirmed the pose since.
     ArrivalContradicted,
     /// The position is too uncertain, and the wheels do not respond to commands.
     WheelsUnresponsive {

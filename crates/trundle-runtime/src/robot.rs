@@ -48,7 +48,6 @@ use trundle_core::{
     BodyEvent, BodyEventKind, GyroRate, Invalid, Odometry, Pose2, Pose3, Scan, SensorEvent, Stamp, WheelTicks,
 };
 use trundle_estimation::{Localizer, OdometryState, PoseMonitor, WheelOdometry};
-use trundle_mapping::MapperConfig;
 
 /// The whole robot: sensor events in; pose, map, plan and twist out.
 ///
@@ -120,12 +119,13 @@ impl Robot {
     pub fn new(config: RobotConfig) -> Result<Self, Invalid> {
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let footprint = config.footprint()?;
-        config.require_believable_speeds()?;
+        config.require_plausible_speeds()?;
         config.require_image_delay()?;
         let perception = PerceptionWorker::new(&config, base_from_camera)?;
         let blind_range = perception.blind_range();
         let map_hz = config.schedule.validated()?.map_hz;
-        let mapping = MapperConfig { blind_range, ..config.mapping.clone() };
+        let mut mapping = config.mapping.clone();
+        mapping.blind_range = blind_range;
         Ok(Self {
             range_sensor: RangeSensor { source: config.sight, deskews: config.deskew },
             base_from_camera,
@@ -266,13 +266,15 @@ impl Robot {
     fn decide(&mut self, now: Stamp, report: &mut StepReport) {
         self.obstacles.forecast(self.latest.scan.as_ref().map(Scan::stamp), now);
         self.update_zones();
+        let scan = self.latest.scan_with_odometry();
         let world = WorldState {
             now,
             estimate: self.localizer.estimate(),
             pose_status: self.pose_status(now),
             grid: self.mapping.grid(),
-            scan: self.latest.scan_with_odometry(),
-            seen: self.latest.camera_health.seen(),
+            scan,
+            // A scan without odometry shows the safety monitor nothing.
+            seen: self.latest.camera_health.seen().filter(|_| scan.is_some()),
             wheels: self.latest.odometry.as_ref().map(|odometry| odometry.stamp),
             hold: self.latest.body.hold(self.range_sensor.source),
             motion: self.motion_sense(now),

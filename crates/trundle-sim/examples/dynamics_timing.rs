@@ -24,7 +24,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let mut contacts = 0;
             for seed in 0..RUNS {
                 let scene = scene(&name)?;
-                let config = SimConfig { has_camera: false, laser: laser.clone(), ..SimConfig::default() };
+                let mut config = SimConfig::default();
+                config.has_camera = false;
+                config.laser = laser.clone();
                 let mut robot = Simulator::new(scene, config, seed)?;
                 let start = Instant::now();
                 wander(&mut robot)?;

@@ -12,6 +12,7 @@ use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_in};
 /// The simulated robot: body, sensors and their noise, and what breaks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SimConfig {
     /// The body.
     pub kobuki: KobukiConfig,

@@ -293,7 +293,7 @@ impl Simulator {
         let snapshot =
             SceneSnapshot { world: &self.scene.world, movers: &movers, lights: &self.scene.lights };
         let kinds = station.read(self.body.pose(), self.body.footprint(), &snapshot);
-        let event = |kind| SensorEvent::Body(BodyEvent { stamp, kind });
+        let event = |kind| SensorEvent::Body(BodyEvent::new(stamp, kind));
         self.outgoing.queue.extend(kinds.into_iter().map(event));
     }
 

@@ -55,7 +55,8 @@ fn step(slam: &mut RgbdSlam, view: &View) -> TrackReport {
 
 /// Maps, localises in the map, and prints a line.
 fn judge(drive: &Drive, views: &[View], seed: u64) {
-    let config = SlamConfig { seed, ..SlamConfig::default() };
+    let mut config = SlamConfig::default();
+    config.seed = seed;
     let mut mapping = RgbdSlam::new(drive.camera, config.clone()).unwrap();
     let mapped: Vec<TrackReport> = views.iter().map(|view| step(&mut mapping, view)).collect();
     mapping.finish_refining();

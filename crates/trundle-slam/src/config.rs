@@ -16,6 +16,7 @@ const MIN_SIDE_PX: usize = 320;
 /// All settings of the RGB-D SLAM.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SlamConfig {
     /// Features.
     pub orb: OrbConfig,
@@ -34,7 +35,7 @@ pub struct SlamConfig {
     pub mapping: LocalMappingConfig,
     /// Loop closing.
     pub loops: LoopConfig,
-    /// Seed of the random samples, 0 or more. Default 0.
+    /// Seed of the random samples, 0 or more. Default 0 (ours): any number serves.
     pub seed: u64,
     /// Number of newest frames whose poses are kept, 1 or more. A larger number keeps a longer trajectory, of some 100 bytes per frame.
     /// Default 108,000: an hour at 30 Hz.

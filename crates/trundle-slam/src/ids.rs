@@ -37,7 +37,7 @@ macro_rules! arena_id {
 arena_id!(KeyframeId, "K");
 arena_id!(LandmarkId, "L");
 
-/// Id of a map with a frame of its own. Ids rise in the order of creation and are never reused.
+/// Id of a map with its own frame. Ids rise in the order of creation and are never reused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct MapId(pub(crate) u32);

@@ -6,6 +6,7 @@ use trundle_core::{Invalid, require_in};
 /// Settings of a [`SurfaceMap`](crate::SurfaceMap).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SurfaceConfig {
     /// Side of a voxel, m, 0.004 to 0.5. Default 0.02. Half of it needs four times the memory.
     pub voxel: f64,

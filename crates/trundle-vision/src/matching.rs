@@ -43,7 +43,7 @@ impl Nearest {
     /// Farther than any.
     const NONE: Self = Self { index: u32::MAX, distance: u32::MAX, next_distance: u32::MAX };
 
-    fn meet(&mut self, index: u32, distance: u32) {
+    fn offer(&mut self, index: u32, distance: u32) {
         // The condition is rarely true, so the time of this branch is negligible.
         if distance < self.next_distance {
             if distance < self.distance {
@@ -63,8 +63,8 @@ fn nearest_both_ways(a: &[Descriptor], b: &[Descriptor]) -> (Vec<Nearest>, Vec<N
     for ((query, nearest), i) in a.iter().zip(&mut from_a).zip(0..) {
         measure(query, b, &mut distances);
         for ((&distance, back), j) in distances.iter().zip(&mut from_b).zip(0..) {
-            nearest.meet(j, distance);
-            back.meet(i, distance);
+            nearest.offer(j, distance);
+            back.offer(i, distance);
         }
     }
     (from_a, from_b)

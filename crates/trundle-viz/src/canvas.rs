@@ -3,7 +3,10 @@
 use crate::clip::{Px, visible_runs};
 use crate::color::Color;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
-use tiny_skia::{FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
+use tiny_skia::{
+    FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform,
+};
+use trundle_core::Hypotenuse;
 
 /// Longest side of any canvas, px. Source: ours.
 pub(crate) const MAX_SIDE: i64 = 6000;
@@ -100,6 +103,17 @@ impl Canvas {
         }
     }
 
+    /// The lines of a path, with round joins.
+    pub(crate) fn stroke(&mut self, path: &Path, pen: Pen) {
+        let stroke = Stroke { width: pen.width as f32, line_join: LineJoin::Round, ..Stroke::default() };
+        self.pixels.stroke_path(path, &paint(pen.color), &stroke, Transform::identity(), None);
+    }
+
+    /// The area of a path.
+    pub(crate) fn fill(&mut self, path: &Path, color: Color) {
+        self.pixels.fill_path(path, &paint(color), FillRule::Winding, Transform::identity(), None);
+    }
+
     /// A filled outline. Points far outside are drawn nearer in.
     pub(crate) fn polygon(&mut self, points: &[Px], color: Color) {
         let far = 4.0 * (self.width().max(self.height()) as f64);
@@ -140,7 +154,7 @@ impl Canvas {
         };
         for y in range(center.1, self.height()) {
             for x in range(center.0, self.width()) {
-                let distance = (x as f64 + 0.5 - center.0).hypot(y as f64 + 0.5 - center.1);
+                let distance = (x as f64 + 0.5 - center.0).hypotenuse(y as f64 + 0.5 - center.1);
                 let opacity = f64::from(color.a) * coverage(distance).clamp(0.0, 1.0);
                 if opacity >= 0.5 {
                     self.blend(x, y, color.alpha(opacity.round() as u8));

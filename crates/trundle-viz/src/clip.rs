@@ -1,5 +1,7 @@
 //! Clipping of polylines to a rectangle: the rasteriser receives only finite, moderate numbers.
 
+use trundle_core::Hypotenuse;
+
 /// A place in a picture: pixels from the left, pixels from the top.
 pub(crate) type Px = (f64, f64);
 
@@ -42,7 +44,7 @@ pub(crate) fn visible_runs(
 }
 
 fn distance(a: Px, b: Px) -> f64 {
-    (a.0 - b.0).hypot(a.1 - b.1)
+    (a.0 - b.0).hypotenuse(a.1 - b.1)
 }
 
 /// The part of a segment inside the rectangle (Liang and Barsky 1984).

@@ -1,175 +1,102 @@
-//! A bitmap typeface: labels of pictures need no font file.
+//! The built-in typeface of pictures: outlines of Roboto.
 
-/// Rows of a glyph. Source: ours.
-pub(crate) const HEIGHT: usize = 7;
-/// Columns of the widest glyph. Source: ours.
-pub(crate) const WIDTH: usize = 5;
-/// Rows below the base line that a descender may take. Source: ours.
-pub(crate) const DESCENT_ROWS: usize = 2;
+use std::sync::LazyLock;
+use tiny_skia::{Path, PathBuilder};
+use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
-/// A letter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Glyph {
-    /// Rows from the top; the highest of [`WIDTH`] bits is the leftmost column in use.
-    pub rows: [u8; HEIGHT],
-    /// Rows that the whole glyph hangs below the base line, at most [`DESCENT_ROWS`].
-    pub drop: usize,
-    /// Columns in use.
-    pub width: usize,
+/// The characters of labels from Roboto Regular. A missing one is drawn as `?`.
+const FONT: &[u8] = include_bytes!("../data/roboto-labels.ttf");
+/// Height of a capital letter \[units of the font\]. Source: Roboto Regular, table OS/2.
+const CAP_HEIGHT: f32 = 1456.0;
+
+static FACE: LazyLock<Face<'static>> =
+    LazyLock::new(|| Face::parse(FONT, 0).expect("invariant: the built-in file is a font"));
+
+/// Width of a text whose capitals are `cap_px` high \[px\].
+pub(crate) fn width_px(text: &str, cap_px: f32) -> f32 {
+    text.chars().map(|character| advance(glyph(character))).sum::<f32>() * cap_px / CAP_HEIGHT
 }
 
-/// The glyph of a character, moved to the left edge; a hollow box for one that we never drew.
-pub(crate) fn glyph(character: char) -> Glyph {
-    if character == ' ' {
-        return Glyph { rows: [0; HEIGHT], drop: 0, width: 3 };
+/// The letters of a text whose capitals are `cap_px` high; `None` for blanks. The text begins at `start`, on its base line \[px\].
+pub(crate) fn outline(text: &str, start: (f32, f32), cap_px: f32) -> Option<Path> {
+    let mut pen = Pen { path: PathBuilder::new(), origin: start, scale: cap_px / CAP_HEIGHT };
+    for glyph in text.chars().map(glyph) {
+        // A blank has no outline.
+        _ = FACE.outline_glyph(glyph, &mut pen);
+        pen.origin.0 += advance(glyph) * pen.scale;
     }
-    let found = GLYPHS.iter().find(|(known, ..)| *known == character);
-    let (_, drop, rows) = found.copied().unwrap_or(('\u{fffd}', 0, BOX));
-    if character.is_ascii_digit() { Glyph { rows, drop, width: WIDTH } } else { proportional(rows, drop) }
+    pen.path.finish()
 }
 
-/// Digits have a constant width, which aligns columns of numbers; other letters have only the columns they use.
-fn proportional(rows: [u8; HEIGHT], drop: usize) -> Glyph {
-    let used = rows.iter().fold(0, |all, row| all | row);
-    let left = (used.leading_zeros() as usize).saturating_sub(8 - WIDTH);
-    let right = (used.trailing_zeros() as usize).min(WIDTH - 1);
-    Glyph { rows: rows.map(|row| row << left), drop, width: WIDTH - left - right }
+/// The glyph of a character; that of `?` for a missing one.
+fn glyph(character: char) -> GlyphId {
+    let character = if character.is_whitespace() { ' ' } else { character };
+    FACE.glyph_index(character).or_else(|| FACE.glyph_index('?')).unwrap_or(GlyphId(0))
 }
 
-/// Rows of the box that replaces a missing character.
-const BOX: [u8; HEIGHT] = [0b11111, 0b10001, 0b10001, 0b10001, 0b10001, 0b10001, 0b11111];
+/// Way to the next letter \[units of the font\].
+fn advance(glyph: GlyphId) -> f32 {
+    f32::from(FACE.glyph_hor_advance(glyph).unwrap_or(0))
+}
 
-/// Character, rows below the base line, rows from the top.
-#[rustfmt::skip]
-const GLYPHS: [(char, usize, [u8; HEIGHT]); 102] = [
-    ('!', 0, [0b00100, 0b00100, 0b00100, 0b00100, 0b00100, 0b00000, 0b00100]),
-    ('"', 0, [0b01010, 0b01010, 0b01010, 0b00000, 0b00000, 0b00000, 0b00000]),
-    ('#', 0, [0b01010, 0b01010, 0b11111, 0b01010, 0b11111, 0b01010, 0b01010]),
-    ('$', 0, [0b00100, 0b01111, 0b10100, 0b01110, 0b00101, 0b11110, 0b00100]),
-    ('%', 0, [0b11001, 0b11001, 0b00010, 0b00100, 0b01000, 0b10011, 0b10011]),
-    ('&', 0, [0b01100, 0b10010, 0b10100, 0b01000, 0b10101, 0b10010, 0b01101]),
-    ('\'', 0, [0b00100, 0b00100, 0b00100, 0b00000, 0b00000, 0b00000, 0b00000]),
-    ('(', 0, [0b00010, 0b00100, 0b01000, 0b01000, 0b01000, 0b00100, 0b00010]),
-    (')', 0, [0b01000, 0b00100, 0b00010, 0b00010, 0b00010, 0b00100, 0b01000]),
-    ('*', 0, [0b00000, 0b00100, 0b10101, 0b01110, 0b10101, 0b00100, 0b00000]),
-    ('+', 0, [0b00000, 0b00100, 0b00100, 0b11111, 0b00100, 0b00100, 0b00000]),
-    (',', 1, [0b00000, 0b00000, 0b00000, 0b00000, 0b01100, 0b00100, 0b01000]),
-    ('-', 0, [0b00000, 0b00000, 0b00000, 0b01110, 0b00000, 0b00000, 0b00000]),
-    ('.', 0, [0b00000, 0b00000, 0b00000, 0b00000, 0b00000, 0b01100, 0b01100]),
-    ('/', 0, [0b00001, 0b00001, 0b00010, 0b00100, 0b01000, 0b10000, 0b10000]),
-    ('0', 0, [0b01110, 0b10001, 0b10001, 0b10001, 0b10001, 0b10001, 0b01110]),
-    ('1', 0, [0b00100, 0b01100, 0b00100, 0b00100, 0b00100, 0b00100, 0b01110]),
-    ('2', 0, [0b01110, 0b10001, 0b00001, 0b00010, 0b00100, 0b01000, 0b11111]),
-    ('3', 0, [0b01110, 0b10001, 0b00001, 0b00110, 0b00001, 0b10001, 0b01110]),
-    ('4', 0, [0b00010, 0b00110, 0b01010, 0b10010, 0b11111, 0b00010, 0b00010]),
-    ('5', 0, [0b11111, 0b10000, 0b11110, 0b00001, 0b00001, 0b10001, 0b01110]),
-    ('6', 0, [0b00110, 0b01000, 0b10000, 0b11110, 0b10001, 0b10001, 0b01110]),
-    ('7', 0, [0b11111, 0b00001, 0b00010, 0b00100, 0b00100, 0b01000, 0b01000]),
-    ('8', 0, [0b01110, 0b10001, 0b10001, 0b01110, 0b10001, 0b10001, 0b01110]),
-    ('9', 0, [0b01110, 0b10001, 0b10001, 0b01111, 0b00001, 0b00010, 0b01100]),
-    (':', 0, [0b00000, 0b01100, 0b01100, 0b00000, 0b01100, 0b01100, 0b00000]),
-    (';', 0, [0b00000, 0b01100, 0b01100, 0b00000, 0b01100, 0b00100, 0b01000]),
-    ('<', 0, [0b00010, 0b00100, 0b01000, 0b10000, 0b01000, 0b00100, 0b00010]),
-    ('=', 0, [0b00000, 0b00000, 0b11111, 0b00000, 0b11111, 0b00000, 0b00000]),
-    ('>', 0, [0b01000, 0b00100, 0b00010, 0b00001, 0b00010, 0b00100, 0b01000]),
-    ('?', 0, [0b01110, 0b10001, 0b00001, 0b00010, 0b00100, 0b00000, 0b00100]),
-    ('@', 0, [0b01110, 0b10001, 0b10111, 0b10101, 0b10111, 0b10000, 0b01110]),
-    ('A', 0, [0b01110, 0b10001, 0b10001, 0b11111, 0b10001, 0b10001, 0b10001]),
-    ('B', 0, [0b11110, 0b10001, 0b10001, 0b11110, 0b10001, 0b10001, 0b11110]),
-    ('C', 0, [0b01110, 0b10001, 0b10000, 0b10000, 0b10000, 0b10001, 0b01110]),
-    ('D', 0, [0b11110, 0b10001, 0b10001, 0b10001, 0b10001, 0b10001, 0b11110]),
-    ('E', 0, [0b11111, 0b10000, 0b10000, 0b11110, 0b10000, 0b10000, 0b11111]),
-    ('F', 0, [0b11111, 0b10000, 0b10000, 0b11110, 0b10000, 0b10000, 0b10000]),
-    ('G', 0, [0b01110, 0b10001, 0b10000, 0b10111, 0b10001, 0b10001, 0b01111]),
-    ('H', 0, [0b10001, 0b10001, 0b10001, 0b11111, 0b10001, 0b10001, 0b10001]),
-    ('I', 0, [0b01110, 0b00100, 0b00100, 0b00100, 0b00100, 0b00100, 0b01110]),
-    ('J', 0, [0b00111, 0b00010, 0b00010, 0b00010, 0b00010, 0b10010, 0b01100]),
-    ('K', 0, [0b10001, 0b10010, 0b10100, 0b11000, 0b10100, 0b10010, 0b10001]),
-    ('L', 0, [0b10000, 0b10000, 0b10000, 0b10000, 0b10000, 0b10000, 0b11111]),
-    ('M', 0, [0b10001, 0b11011, 0b10101, 0b10101, 0b10001, 0b10001, 0b10001]),
-    ('N', 0, [0b10001, 0b10001, 0b11001, 0b10101, 0b10011, 0b10001, 0b10001]),
-    ('O', 0, [0b01110, 0b10001, 0b10001, 0b10001, 0b10001, 0b10001, 0b01110]),
-    ('P', 0, [0b11110, 0b10001, 0b10001, 0b11110, 0b10000, 0b10000, 0b10000]),
-    ('Q', 0, [0b01110, 0b10001, 0b10001, 0b10001, 0b10101, 0b10010, 0b01101]),
-    ('R', 0, [0b11110, 0b10001, 0b10001, 0b11110, 0b10100, 0b10010, 0b10001]),
-    ('S', 0, [0b01111, 0b10000, 0b10000, 0b01110, 0b00001, 0b00001, 0b11110]),
-    ('T', 0, [0b11111, 0b00100, 0b00100, 0b00100, 0b00100, 0b00100, 0b00100]),
-    ('U', 0, [0b10001, 0b10001, 0b10001, 0b10001, 0b10001, 0b10001, 0b01110]),
-    ('V', 0, [0b10001, 0b10001, 0b10001, 0b10001, 0b01010, 0b01010, 0b00100]),
-    ('W', 0, [0b10001, 0b10001, 0b10001, 0b10101, 0b10101, 0b11011, 0b10001]),
-    ('X', 0, [0b10001, 0b10001, 0b01010, 0b00100, 0b01010, 0b10001, 0b10001]),
-    ('Y', 0, [0b10001, 0b10001, 0b01010, 0b00100, 0b00100, 0b00100, 0b00100]),
-    ('Z', 0, [0b11111, 0b00001, 0b00010, 0b00100, 0b01000, 0b10000, 0b11111]),
-    ('[', 0, [0b01110, 0b01000, 0b01000, 0b01000, 0b01000, 0b01000, 0b01110]),
-    ('\\', 0, [0b10000, 0b10000, 0b01000, 0b00100, 0b00010, 0b00001, 0b00001]),
-    (']', 0, [0b01110, 0b00010, 0b00010, 0b00010, 0b00010, 0b00010, 0b01110]),
-    ('^', 0, [0b00100, 0b01010, 0b10001, 0b00000, 0b00000, 0b00000, 0b00000]),
-    ('_', 0, [0b00000, 0b00000, 0b00000, 0b00000, 0b00000, 0b00000, 0b11111]),
-    ('`', 0, [0b01000, 0b00100, 0b00000, 0b00000, 0b00000, 0b00000, 0b00000]),
-    ('a', 0, [0b00000, 0b00000, 0b01110, 0b00001, 0b01111, 0b10001, 0b01111]),
-    ('b', 0, [0b10000, 0b10000, 0b11110, 0b10001, 0b10001, 0b10001, 0b11110]),
-    ('c', 0, [0b00000, 0b00000, 0b01111, 0b10000, 0b10000, 0b10000, 0b01111]),
-    ('d', 0, [0b00001, 0b00001, 0b01111, 0b10001, 0b10001, 0b10001, 0b01111]),
-    ('e', 0, [0b00000, 0b00000, 0b01110, 0b10001, 0b11111, 0b10000, 0b01110]),
-    ('f', 0, [0b00110, 0b01000, 0b11100, 0b01000, 0b01000, 0b01000, 0b01000]),
-    ('g', 2, [0b01111, 0b10001, 0b10001, 0b10001, 0b01111, 0b00001, 0b01110]),
-    ('h', 0, [0b10000, 0b10000, 0b11110, 0b10001, 0b10001, 0b10001, 0b10001]),
-    ('i', 0, [0b00100, 0b00000, 0b01100, 0b00100, 0b00100, 0b00100, 0b01110]),
-    ('j', 0, [0b00010, 0b00000, 0b00110, 0b00010, 0b00010, 0b10010, 0b01100]),
-    ('k', 0, [0b10000, 0b10000, 0b10010, 0b10100, 0b11000, 0b10100, 0b10010]),
-    ('l', 0, [0b01100, 0b00100, 0b00100, 0b00100, 0b00100, 0b00100, 0b01110]),
-    ('m', 0, [0b00000, 0b00000, 0b11010, 0b10101, 0b10101, 0b10101, 0b10101]),
-    ('n', 0, [0b00000, 0b00000, 0b11110, 0b10001, 0b10001, 0b10001, 0b10001]),
-    ('o', 0, [0b00000, 0b00000, 0b01110, 0b10001, 0b10001, 0b10001, 0b01110]),
-    ('p', 2, [0b11110, 0b10001, 0b10001, 0b10001, 0b11110, 0b10000, 0b10000]),
-    ('q', 2, [0b01111, 0b10001, 0b10001, 0b10001, 0b01111, 0b00001, 0b00001]),
-    ('r', 0, [0b00000, 0b00000, 0b10110, 0b11000, 0b10000, 0b10000, 0b10000]),
-    ('s', 0, [0b00000, 0b00000, 0b01111, 0b10000, 0b01110, 0b00001, 0b11110]),
-    ('t', 0, [0b01000, 0b01000, 0b11100, 0b01000, 0b01000, 0b01000, 0b00110]),
-    ('u', 0, [0b00000, 0b00000, 0b10001, 0b10001, 0b10001, 0b10001, 0b01111]),
-    ('v', 0, [0b00000, 0b00000, 0b10001, 0b10001, 0b01010, 0b01010, 0b00100]),
-    ('w', 0, [0b00000, 0b00000, 0b10001, 0b10101, 0b10101, 0b10101, 0b01010]),
-    ('x', 0, [0b00000, 0b00000, 0b10001, 0b01010, 0b00100, 0b01010, 0b10001]),
-    ('y', 2, [0b10001, 0b10001, 0b10001, 0b10001, 0b01111, 0b00001, 0b01110]),
-    ('z', 0, [0b00000, 0b00000, 0b11111, 0b00010, 0b00100, 0b01000, 0b11111]),
-    ('{', 0, [0b00010, 0b00100, 0b00100, 0b01000, 0b00100, 0b00100, 0b00010]),
-    ('|', 0, [0b00100, 0b00100, 0b00100, 0b00100, 0b00100, 0b00100, 0b00100]),
-    ('}', 0, [0b01000, 0b00100, 0b00100, 0b00010, 0b00100, 0b00100, 0b01000]),
-    ('~', 0, [0b00000, 0b00000, 0b01000, 0b10101, 0b00010, 0b00000, 0b00000]),
-    ('°', 0, [0b01100, 0b10010, 0b10010, 0b01100, 0b00000, 0b00000, 0b00000]),
-    ('±', 0, [0b00100, 0b00100, 0b11111, 0b00100, 0b00100, 0b00000, 0b11111]),
-    ('²', 0, [0b01100, 0b00010, 0b00100, 0b01110, 0b00000, 0b00000, 0b00000]),
-    ('µ', 2, [0b10001, 0b10001, 0b10001, 0b10011, 0b11101, 0b10000, 0b10000]),
-    ('·', 0, [0b00000, 0b00000, 0b00000, 0b01100, 0b01100, 0b00000, 0b00000]),
-    ('×', 0, [0b00000, 0b10001, 0b01010, 0b00100, 0b01010, 0b10001, 0b00000]),
-    ('–', 0, [0b00000, 0b00000, 0b00000, 0b11111, 0b00000, 0b00000, 0b00000]),
-    ('→', 0, [0b00000, 0b00100, 0b00010, 0b11111, 0b00010, 0b00100, 0b00000]),
-];
+/// Draws outlines, whose y axis points up, into a path of a picture, whose y axis points down.
+struct Pen {
+    path: PathBuilder,
+    origin: (f32, f32),
+    scale: f32,
+}
+
+impl Pen {
+    fn at(&self, x: f32, y: f32) -> (f32, f32) {
+        (self.origin.0 + self.scale * x, self.origin.1 - self.scale * y)
+    }
+}
+
+impl OutlineBuilder for Pen {
+    fn move_to(&mut self, x: f32, y: f32) {
+        let (x, y) = self.at(x, y);
+        self.path.move_to(x, y);
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        let (x, y) = self.at(x, y);
+        self.path.line_to(x, y);
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        let ((x1, y1), (x, y)) = (self.at(x1, y1), self.at(x, y));
+        self.path.quad_to(x1, y1, x, y);
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        let ((x1, y1), (x2, y2), (x, y)) = (self.at(x1, y1), self.at(x2, y2), self.at(x, y));
+        self.path.cubic_to(x1, y1, x2, y2, x, y);
+    }
+
+    fn close(&mut self) {
+        self.path.close();
+    }
+}
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn every_printable_ascii_character_is_drawn_and_no_two_look_alike() {
-        let twins = [('0', 'O'), ('-', '–'), ('|', 'I')];
-        let all: Vec<char> = (' '..='~').collect();
-        for (i, &a) in all.iter().enumerate() {
-            assert!(a == ' ' || GLYPHS.iter().any(|(c, ..)| *c == a), "{a:?} is missing");
-            for &b in &all[i + 1..] {
-                let same = glyph(a).rows == glyph(b).rows && glyph(a).drop == glyph(b).drop;
-                assert!(!same || twins.contains(&(a, b)), "{a:?} and {b:?} look alike");
-            }
+    fn every_printable_ascii_character_and_every_unit_is_drawn() {
+        for character in ('!'..='~').chain("°±²µ·×–".chars()) {
+            assert!(FACE.glyph_index(character).is_some(), "{character:?} is missing");
+            assert!(outline(&character.to_string(), (0.0, 0.0), 7.0).is_some(), "{character:?} is blank");
         }
+        assert!(outline(" \n", (0.0, 0.0), 7.0).is_none());
+        assert_eq!((glyph('\u{4e00}'), glyph('\t')), (glyph('?'), glyph(' ')));
     }
 
     #[test]
-    fn glyphs_stand_at_the_left_edge_within_their_width() {
-        for (character, drop, _) in GLYPHS {
-            let glyph = glyph(character);
-            let used = glyph.rows.iter().fold(0, |all, row| all | row);
-            assert!(drop <= DESCENT_ROWS && (1..=WIDTH).contains(&glyph.width), "{character}");
-            assert_eq!(used & ((1 << (WIDTH - glyph.width)) - 1), 0, "{character} is wider than it says");
-        }
+    fn capitals_have_their_height_and_digits_one_width() {
+        let bounds = outline("H", (10.0, 20.0), 14.0).unwrap().bounds();
+        assert!((bounds.top() - 6.0).abs() < 0.01 && (bounds.bottom() - 20.0).abs() < 0.01, "{bounds:?}");
+        let widths: Vec<f32> = ('0'..='9').map(|digit| width_px(&digit.to_string(), 14.0)).collect();
+        assert!(widths.iter().all(|width| *width == widths[0]), "{widths:?}");
     }
 }

@@ -18,7 +18,7 @@ const MAX_STAMP_DIFFERENCE_S: f64 = 0.02;
 ///
 /// # Errors
 /// When the folder cannot be read.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn main() -> Result<(), Box<dyn Error>> {
     match std::env::args().nth(1).filter(|argument| Path::new(argument).is_dir()) {
         Some(folder) => track_folder(Path::new(&folder)),
         None => track_simulated_images(),
@@ -65,8 +65,4 @@ fn print_pose(slam: &mut RgbdSlam, image: &RgbdImage) -> bool {
         position.z
     );
     report.tracking.is_located()
-}
-
-fn main() -> Result<(), Box<dyn Error>> {
-    run()
 }

@@ -15,7 +15,7 @@ use trundle::sim::{LaserConfig, Scene, SimConfig, Simulator};
 ///
 /// # Errors
 /// When the log cannot be read.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn main() -> Result<(), Box<dyn Error>> {
     let argument = std::env::args().nth(1).filter(|argument| Path::new(argument).is_file());
     let scans = match argument {
         Some(log) => {
@@ -45,7 +45,8 @@ pub fn run() -> Result<(), Box<dyn Error>> {
 
 /// Two seconds of driving with a laser: raw odometry is the true pose here.
 fn simulated_scans() -> Result<Vec<(Pose2, Scan)>, Box<dyn Error>> {
-    let config = SimConfig { laser: Some(LaserConfig::rplidar_a1()), ..SimConfig::default() };
+    let mut config = SimConfig::default();
+    config.laser = Some(LaserConfig::rplidar_a1());
     let mut body = Simulator::new(Scene::by_name("room", 1)?, config, 1)?;
     body.command(Twist2::new(0.2, 0.1))?;
     let (mut pose, mut scans) = (Pose2::IDENTITY, Vec::new());
@@ -60,8 +61,4 @@ fn simulated_scans() -> Result<Vec<(Pose2, Scan)>, Box<dyn Error>> {
         }
     }
     Ok(scans)
-}
-
-fn main() -> Result<(), Box<dyn Error>> {
-    run()
 }

@@ -21,7 +21,7 @@ const ROOM: &str = "\
 ///
 /// # Errors
 /// When the robot or the map is not valid.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn main() -> Result<(), Box<dyn Error>> {
     let grid = OccupancyGrid::from_ascii(0.25, ROOM)?; // or trundle::io::read_map("map.yaml")
     let footprint = Footprint::Disc { radius: 0.17 };
     let mut planner =
@@ -36,8 +36,4 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         }
         other => Err(format!("no plan: {other:?}").into()),
     }
-}
-
-fn main() -> Result<(), Box<dyn Error>> {
-    run()
 }

@@ -12,7 +12,7 @@ use trundle::docking::{DockingConfig, DockingPlan, DockingPlanner, Obstacle, Obs
 ///
 /// # Errors
 /// When start or goal touch an obstacle.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn main() -> Result<(), Box<dyn Error>> {
     let wall = |y: f64| Obstacle::Segment(Vector2::new(-2.0, y), Vector2::new(2.0, y));
     let corridor = ObstacleScene::new(&[wall(-0.45), wall(0.45)])?;
     let corners = [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)];
@@ -28,8 +28,4 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         }
         other => Err(format!("no manoeuvre: {other:?}").into()),
     }
-}
-
-fn main() -> Result<(), Box<dyn Error>> {
-    run()
 }

@@ -16,7 +16,7 @@ const TIME_LIMIT_S: f64 = 30.0;
 ///
 /// # Errors
 /// When the scene or the robot is not valid.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn main() -> Result<(), Box<dyn Error>> {
     let mut body = Simulator::new(Scene::by_name("demo", 1)?, SimConfig::default(), 1)?;
     let mut robot = Robot::new(RobotConfig::default())?;
     robot.drive_to(Pose2::new(0.5, 0.0, 0.0))?;
@@ -35,8 +35,4 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         }
     }
     Ok(())
-}
-
-fn main() -> Result<(), Box<dyn Error>> {
-    run()
 }

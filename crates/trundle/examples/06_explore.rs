@@ -13,7 +13,7 @@ use trundle::sim::{Scene, SimConfig, Simulator};
 ///
 /// # Errors
 /// When the scene or the robot is not valid.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn main() -> Result<(), Box<dyn Error>> {
     let seconds: f64 = std::env::args().nth(1).and_then(|argument| argument.parse().ok()).unwrap_or(3.0);
     let mut body = Simulator::new(Scene::by_name("demo", 1)?, SimConfig::default(), 1)?;
     let mut robot = Robot::new(RobotConfig::default())?;
@@ -32,8 +32,4 @@ pub fn run() -> Result<(), Box<dyn Error>> {
     println!("{images} images; the task is {:?}, {} ended", robot.task(), robot.tasks_ended().len());
     assert!(images > 0);
     Ok(())
-}
-
-fn main() -> Result<(), Box<dyn Error>> {
-    run()
 }

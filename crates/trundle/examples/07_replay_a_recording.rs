@@ -14,7 +14,7 @@ use trundle::sim::{Scene, SimConfig, Simulator};
 ///
 /// # Errors
 /// When the recording cannot be read.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn main() -> Result<(), Box<dyn Error>> {
     let argument = std::env::args().nth(1).map(PathBuf::from).filter(|argument| argument.is_file());
     if let Some(file) = argument {
         return count(&file);
@@ -55,8 +55,4 @@ fn record(file: &Path) -> Result<(), Box<dyn Error>> {
     }
     recorder.finish()?;
     Ok(())
-}
-
-fn main() -> Result<(), Box<dyn Error>> {
-    run()
 }

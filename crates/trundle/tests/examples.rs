@@ -1,10 +1,6 @@
 //! Every numbered example runs.
 
-#![allow(
-    dead_code,
-    clippy::print_stdout,
-    reason = "the examples are programs, with a `main` and with output"
-)]
+#![allow(clippy::print_stdout, reason = "the examples are programs with output")]
 
 macro_rules! examples {
     ($($name:ident: $file:literal),* $(,)?) => {
@@ -14,7 +10,7 @@ macro_rules! examples {
 
             #[test]
             fn $name() {
-                $name::run().unwrap();
+                $name::main().unwrap();
             }
         )*
     };

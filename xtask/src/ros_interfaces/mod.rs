@@ -13,18 +13,20 @@ use std::path::Path;
 const TABLE: &str = "crates/trundle-ros2/interfaces";
 /// The folder of the structures.
 const GENERATED: &str = "crates/trundle-ros2/src/generated";
+/// The list of all interfaces in the program that prints their bytes.
+const LIST: &str = "crates/trundle-ros2/examples/interface_bytes/all.rs";
 
 /// Writes the structures; with `check_only`, only reports whether they are up to date.
 pub fn run(root: &Path, check_only: bool) -> Verdict {
     let files = files(&read(&root.join(TABLE))?);
     let mut is_current = true;
     for (name, text) in &files {
-        let path = root.join(GENERATED).join(name);
+        let path = root.join(name);
         if std::fs::read_to_string(&path).is_ok_and(|old| old == *text) {
             continue;
         }
         if check_only {
-            println!("{GENERATED}/{name} is not what the interfaces give: cargo xtask ros-interfaces");
+            println!("{name} is not what the interfaces give: cargo xtask ros-interfaces");
             is_current = false;
         } else {
             write(&path, text)?;
@@ -71,13 +73,13 @@ fn names(folder: &Path) -> Result<Vec<String>, String> {
     Ok(names)
 }
 
-/// The files of the generated folder: one per interface, one per package, one of all.
+/// The files by their paths: one per interface, one per package, one of all packages, and the list of all interfaces.
 fn files(interfaces: &[Interface]) -> BTreeMap<String, String> {
     let mut files = BTreeMap::new();
     let mut packages = BTreeMap::<&str, Vec<String>>::new();
     for interface in interfaces {
         let module = snake(&interface.name);
-        files.insert(format!("{}/{module}.rs", interface.package), rust::file(interface));
+        files.insert(format!("{GENERATED}/{}/{module}.rs", interface.package), rust::file(interface));
         packages.entry(&interface.package).or_default().push(module);
     }
     let mut root = "//! ROS 2 interfaces. Written by `cargo xtask ros-interfaces`.\n\n".to_owned();
@@ -87,10 +89,11 @@ fn files(interfaces: &[Interface]) -> BTreeMap<String, String> {
         modules.iter().for_each(|module| _ = writeln!(text, "mod {module};"));
         text.push('\n');
         modules.iter().for_each(|module| _ = writeln!(text, "pub use {module}::*;"));
-        files.insert(format!("{package}/mod.rs"), text);
+        files.insert(format!("{GENERATED}/{package}/mod.rs"), text);
         let _ = writeln!(root, "pub mod {package};");
     }
-    files.insert("mod.rs".to_owned(), root);
+    files.insert(format!("{GENERATED}/mod.rs"), root);
+    files.insert(LIST.to_owned(), rust::list(interfaces));
     files
 }
 

@@ -8,6 +8,10 @@ const MAX_PLAIN_ARRAY: usize = 32;
 /// Keywords of Rust that are names of fields.
 const KEYWORDS: [&str; 4] = ["type", "match", "ref", "move"];
 
+/// Messages with the name of a type in another crate: their Rust names end in `Message`.
+const NAMES_OF_OTHER_CRATES: [&str; 6] =
+    ["CameraInfo", "Image", "OccupancyGrid", "Odometry", "Path", "Vector3"];
+
 /// The file of one interface.
 pub fn file(interface: &Interface) -> String {
     let Interface { package, kind, name, parts } = interface;
@@ -22,6 +26,20 @@ pub fn file(interface: &Interface) -> String {
     text
 }
 
+/// The list of all interfaces, for the program that prints their bytes.
+pub fn list(interfaces: &[Interface]) -> String {
+    let mut text = "//! All interfaces. Written by `cargo xtask ros-interfaces`.\n\nuse super::structure::{Structure, action, message, service};\nuse trundle_ros2::generated;\n\n/// The structures of all interfaces.\npub fn structures() -> Vec<Structure> {\n    [\n".to_owned();
+    for Interface { package, kind, name, .. } in interfaces {
+        let (function, name) = match kind {
+            Kind::Message => ("message", type_name(name)),
+            Kind::Service => ("service", name.clone()),
+            Kind::Action => ("action", name.clone()),
+        };
+        let _ = writeln!(text, "        {function}::<generated::{package}::{name}>(),");
+    }
+    text + "    ]\n    .into_iter()\n    .flatten()\n    .collect()\n}\n"
+}
+
 /// The implementation of the trait with the type's name.
 fn type_of(interface: &Interface) -> String {
     let Interface { package, kind, name, .. } = interface;
@@ -31,7 +49,9 @@ fn type_of(interface: &Interface) -> String {
         folder(*kind)
     );
     match kind {
-        Kind::Message => format!("\nimpl crate::interface::MessageType for {name} {{\n{names}}}\n"),
+        Kind::Message => {
+            format!("\nimpl crate::interface::MessageType for {} {{\n{names}}}\n", type_name(name))
+        }
         Kind::Service => format!(
             "{marker}\nimpl crate::interface::ServiceType for {name} {{\n{names}    type Request = {name}Request;\n    type Response = {name}Response;\n}}\n"
         ),
@@ -49,9 +69,10 @@ fn folder(kind: Kind) -> &'static str {
     }
 }
 
-fn structure(package: &str, name: &str, part: &Part) -> String {
+fn structure(package: &str, ros_name: &str, part: &Part) -> String {
+    let name = type_name(ros_name);
     let mut text = format!(
-        "\n/// `{package}`: `{name}`.\n#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]\npub struct {name} {{\n"
+        "\n/// `{package}`: `{ros_name}`.\n#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]\npub struct {name} {{\n"
     );
     for field in &part.fields {
         let _ = writeln!(
@@ -117,7 +138,12 @@ fn rust_type(package: &str, field: &Field) -> String {
 }
 
 fn path(package: &str, name: &str) -> String {
-    format!("crate::generated::{package}::{name}")
+    format!("crate::generated::{package}::{}", type_name(name))
+}
+
+/// The Rust name of a structure.
+fn type_name(name: &str) -> String {
+    if NAMES_OF_OTHER_CRATES.contains(&name) { format!("{name}Message") } else { name.to_owned() }
 }
 
 fn primitive(element: &str) -> Option<&'static str> {
@@ -154,6 +180,19 @@ mod tests {
             "pub data: crate::wire::Bytes,",
             "pub const A: u8 = 1;",
             "pub r#type: std::string::String,",
+        ] {
+            assert!(file.contains(line), "{line} is not in\n{file}");
+        }
+    }
+
+    #[test]
+    fn a_message_with_the_name_of_a_type_of_another_crate_ends_in_message() {
+        let file = file(&parse("x_msgs", Kind::Message, "Image", "Vector3 size\n").unwrap());
+        for line in [
+            "pub struct ImageMessage {",
+            "pub size: crate::generated::x_msgs::Vector3Message,",
+            "impl crate::interface::MessageType for ImageMessage {",
+            "const NAME: &str = \"Image\";",
         ] {
             assert!(file.contains(line), "{line} is not in\n{file}");
         }

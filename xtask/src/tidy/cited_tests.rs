@@ -5,7 +5,7 @@ use super::tree::Tree;
 
 /// The documents whose code spans in the form of a test's name are checked.
 const DOCUMENTS: [&str; 2] = ["docs/explanation/threat-model.md", "docs/explanation/safety-case.md"];
-/// Underscores from which a span is the name of a test; names of options and files have fewer. Source: ours.
+/// Smallest number of underscores at which a span is the name of a test; names of options and files have fewer. Source: ours.
 const MIN_UNDERSCORES: usize = 3;
 
 /// Checks the documents.

@@ -18,6 +18,7 @@ mod lockfile;
 mod manifest;
 mod markdown;
 mod modules;
+mod open_types;
 mod prose;
 mod purity;
 mod results_page;
@@ -83,6 +84,7 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
         manifest::check,
         markdown::check,
         modules::check,
+        open_types::check,
         type_names::check,
         types::check,
         prose::check,

@@ -1,5 +1,4 @@
-//! One name, one type: no two crates of the facade define a public type of the same name. Generated messages are not exported by the
-//! facade.
+//! One name, one type: no two crates of the facade define a public type of the same name.
 
 use super::finding::{Finding, Rule};
 use super::source::definitions;
@@ -11,7 +10,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     let mut first: BTreeMap<String, (&str, String)> = BTreeMap::new();
     let mut findings = Vec::new();
     for package in tree.packages.iter().filter(|package| package.folder.starts_with("crates/")) {
-        for source in tree.sources(package).filter(|source| !source.is_generated()) {
+        for source in tree.sources(package) {
             for (line, name) in public_types(source.code.text()) {
                 let path = &source.file.path;
                 let (owner, other) =
@@ -35,7 +34,7 @@ fn public_types(code: &str) -> Vec<(usize, String)> {
 fn public_type(line: &str) -> Option<String> {
     let item = line.trim_start().strip_prefix("pub ")?;
     let (keyword, name) = *definitions(item).first()?;
-    ["struct", "enum", "trait"].contains(&keyword).then(|| name.to_owned())
+    ["struct", "enum", "trait", "type"].contains(&keyword).then(|| name.to_owned())
 }
 
 #[cfg(test)]
@@ -44,8 +43,11 @@ mod tests {
 
     #[test]
     fn only_types_that_are_public() {
-        let code = "pub struct A<T>(T);\nstruct B;\n  pub enum C {\npub(crate) struct D;\npub fn e() {}\npub trait F {}\n";
+        let code = "pub struct A<T>(T);\nstruct B;\n  pub enum C {\npub(crate) struct D;\npub fn e() {}\npub trait F {}\npub type G = u8;\n";
         let found = public_types(code);
-        assert_eq!(found, [(1, "A".to_owned()), (3, "C".to_owned()), (6, "F".to_owned())]);
+        assert_eq!(
+            found,
+            [(1, "A".to_owned()), (3, "C".to_owned()), (6, "F".to_owned()), (7, "G".to_owned())]
+        );
     }
 }

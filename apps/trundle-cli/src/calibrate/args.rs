@@ -81,16 +81,3 @@ pub struct BoardSheetArgs {
     #[command(flatten)]
     pub common: Common,
 }
-
-impl CalibrateArgs {
-    /// Options of every command.
-    pub fn common(&self) -> &Common {
-        match &self.command {
-            CalibrateCommand::Camera(args) => &args.common,
-            CalibrateCommand::Board(args) => &args.common,
-            CalibrateCommand::Mount(args)
-            | CalibrateCommand::Wheels(args)
-            | CalibrateCommand::Delay(args) => &args.common,
-        }
-    }
-}

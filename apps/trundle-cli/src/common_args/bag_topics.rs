@@ -23,8 +23,11 @@ pub struct BagTopicsArgs {
 impl BagTopicsArgs {
     /// The topics.
     pub fn options(&self) -> RosSequenceOptions {
-        let [color_topic, depth_topic, info_topic, odometry_topic] =
-            [&self.color_topic, &self.depth_topic, &self.info_topic, &self.odom_topic].map(Option::clone);
-        RosSequenceOptions { color_topic, depth_topic, info_topic, odometry_topic }
+        let mut options = RosSequenceOptions::default();
+        options.color_topic.clone_from(&self.color_topic);
+        options.depth_topic.clone_from(&self.depth_topic);
+        options.info_topic.clone_from(&self.info_topic);
+        options.odometry_topic.clone_from(&self.odom_topic);
+        options
     }
 }

@@ -112,14 +112,3 @@ pub struct MapsArgs {
     #[command(flatten)]
     pub common: Common,
 }
-
-impl EvalArgs {
-    /// Options of every command.
-    pub fn common(&self) -> &Common {
-        match &self.which {
-            EvalObject::Trajectory(args) => &args.common,
-            EvalObject::Relations(args) => &args.common,
-            EvalObject::Map(args) => &args.common,
-        }
-    }
-}

@@ -36,6 +36,8 @@ pub enum Experiment {
     Barn(BarnArgs),
     /// The courses of the local-planning benchmark MRPB 1.0, with and without people, with a 2-D laser.
     Mrpb(MrpbArgs),
+    /// Long halls, mazes and changed rooms, each with a given map, with a 2-D laser.
+    KnownMap(RunsArgs),
     /// A drive in real time for many minutes: jitter of control, load of the robot's core, memory.
     RealTime(RealTimeArgs),
     /// The four corridor scenarios of Hong (2024), by the paper's method and by the optimal one.
@@ -203,18 +205,6 @@ pub struct MergeArgs {
     pub common: Common,
 }
 
-impl ExperimentArgs {
-    /// Options of every command.
-    pub fn common(&self) -> &Common {
-        match &self.which {
-            Experiment::RealTime(args) => &args.common,
-            Experiment::Corridor(args) => &args.common,
-            Experiment::Merge(args) => &args.common,
-            which => &which.series().expect("invariant: every other experiment has many runs").common,
-        }
-    }
-}
-
 impl Experiment {
     /// The options of an experiment with many runs.
     pub fn series(&self) -> Option<&SeriesArgs> {
@@ -225,6 +215,7 @@ impl Experiment {
             | Self::Faults(runs)
             | Self::People(runs)
             | Self::LookAlikes(runs)
+            | Self::KnownMap(runs)
             | Self::DockingStation(runs) => Some(&runs.series),
             Self::Barn(BarnArgs { series, .. }) | Self::Mrpb(MrpbArgs { series, .. }) => Some(series),
             Self::RealTime(_) | Self::Corridor(_) | Self::Merge(_) => None,

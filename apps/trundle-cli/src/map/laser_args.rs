@@ -16,7 +16,7 @@ pub struct LaserArgs {
     /// The laser is mounted upside down.
     #[arg(long)]
     pub upside_down: bool,
-    /// Range from which on readings are no returns, m [default: the most frequent largest reading]
+    /// Smallest range that is no return, m [default: the most frequent largest reading]
     #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub max_range: Option<f64>,
     /// The topic of the scans; in a CARMEN log the name of the lines, as RAWLASER2 [default: the one with the largest number of scans]
@@ -25,16 +25,16 @@ pub struct LaserArgs {
 }
 
 impl LaserArgs {
-    /// The options for reading the log.
-    pub fn options(&self) -> LaserLogOptions {
-        LaserLogOptions {
-            laser_x: self.laser_x,
-            laser_turn: self.laser_turn.map(f64::to_radians),
-            upside_down: self.upside_down,
-            max_range: self.max_range,
-            scan_topic: self.scan_topic.clone(),
-            odometry_topic: None,
-        }
+    /// The options for reading the log, with the topic of a bag's odometry.
+    pub fn options(&self, odometry_topic: Option<String>) -> LaserLogOptions {
+        let mut options = LaserLogOptions::default();
+        options.laser_x = self.laser_x;
+        options.laser_turn = self.laser_turn.map(f64::to_radians);
+        options.upside_down = self.upside_down;
+        options.max_range = self.max_range;
+        options.scan_topic = self.scan_topic.clone();
+        options.odometry_topic = odometry_topic;
+        options
     }
 
     /// The first given option.

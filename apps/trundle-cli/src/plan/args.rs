@@ -1,10 +1,10 @@
 //! The command line of `trundle plan`.
 
-use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs};
+use crate::common_args::{Common, NumberArg, RobotArgs};
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
-use std::str::FromStr;
+use trundle::app::plan::PlaceArg;
 
 /// `trundle plan`
 #[derive(Debug, Args)]
@@ -55,24 +55,4 @@ pub struct PlanArgs {
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
-}
-
-/// A pose on the command line, or the name of a place.
-#[derive(Debug, Clone, PartialEq)]
-pub enum PlaceArg {
-    Pose(PoseArg),
-    Name(String),
-}
-
-impl FromStr for PlaceArg {
-    type Err = String;
-
-    /// Text with a comma is a pose.
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.trim() {
-            "" => Err("expected a pose X,Y,DEG (m, m, deg) or the name of a place".to_owned()),
-            pose if pose.contains(',') => Ok(Self::Pose(pose.parse()?)),
-            name => Ok(Self::Name(name.to_owned())),
-        }
-    }
 }

@@ -65,15 +65,14 @@ pub struct Ros2Args {
 impl Ros2Args {
     /// The robot's topics.
     pub fn topics(&self) -> BodySettings {
-        BodySettings {
-            color: self.color.clone(),
-            depth: self.depth.clone(),
-            camera_info: self.camera_info.clone(),
-            depth_info: self.depth_info.clone(),
-            imu: (self.imu != "none").then(|| self.imu.clone()),
-            scan: self.scan.clone(),
-            ..BodySettings::default()
-        }
+        let mut settings = BodySettings::default();
+        settings.color = self.color.clone();
+        settings.depth = self.depth.clone();
+        settings.camera_info = self.camera_info.clone();
+        settings.depth_info = self.depth_info.clone();
+        settings.imu = (self.imu != "none").then(|| self.imu.clone());
+        settings.scan = self.scan.clone();
+        settings
     }
 
     /// Whether the run continues after its mission.

@@ -3,11 +3,10 @@
 use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs, choice};
 use crate::live::LiveArgs;
 use crate::output_args::{ContinuedFileArg, EditedFileArg, OutputDirArg, OutputFileArg};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
-use trundle::app::vocabulary_file::read_vocabulary;
+use trundle::app::hardware::{GyroOrigin, IntrinsicsSource};
 use trundle::app::{AppError, MissionRequest, RecordingContent, RunSetup};
-use trundle::core::PinholeCamera;
 use trundle::drivers::{BaseSpec, CameraSpec};
 use trundle::runtime::{Mission, RobotConfig};
 
@@ -24,8 +23,11 @@ pub struct RunArgs {
     #[arg(long, value_name = "CAMERA")]
     pub camera: CameraSpec,
     /// Intrinsics of the colour camera: those reported by the camera, or those of the robot file.
-    #[arg(long, value_enum, value_name = "FROM", default_value_t = IntrinsicsArg::Device)]
-    pub intrinsics: IntrinsicsArg,
+    #[arg(long, value_name = "FROM", default_value = "device", value_parser = choice(&IntrinsicsSource::CHOICES))]
+    pub intrinsics: IntrinsicsSource,
+    /// The gyro: the base's, or that of a RealSense camera.
+    #[arg(long, value_name = "FROM", default_value = "base", value_parser = choice(&GyroOrigin::CHOICES))]
+    pub gyro: GyroOrigin,
     /// The mission.
     #[command(flatten)]
     pub mission: MissionArgs,
@@ -87,18 +89,7 @@ impl RunOptions {
         setup.time_limit = self.time_limit.unwrap_or(f64::MAX);
         setup.real_time = true;
         setup.recording = self.record;
-        let vocabulary = self.vocabulary.as_deref().map(read_vocabulary).transpose()?;
-        Ok(match vocabulary {
-            Some(vocabulary) => setup.with_vocabulary(&vocabulary),
-            None => setup,
-        })
-    }
-}
-
-impl RunArgs {
-    /// The intrinsics of the robot file, if requested.
-    pub fn robot_camera(&self, robot: &RobotConfig) -> Option<PinholeCamera> {
-        (self.intrinsics == IntrinsicsArg::Robot).then_some(robot.camera)
+        setup.with_vocabulary_of(self.vocabulary.as_deref())
     }
 }
 
@@ -132,13 +123,4 @@ impl MissionArgs {
         let goals = self.goal.iter().map(|goal| goal.0).collect();
         MissionRequest { goals, explore: self.explore, dock: self.dock, file: self.mission.clone() }
     }
-}
-
-/// Source of the colour camera's intrinsics.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum IntrinsicsArg {
-    /// The camera's own.
-    Device,
-    /// The table [camera] of the robot file.
-    Robot,
 }

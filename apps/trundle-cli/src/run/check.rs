@@ -14,12 +14,12 @@ const CHECK_S: f64 = 15.0;
 pub fn check(args: &RunArgs) -> Result<Outcome, AppError> {
     let robot = args.options.robot.robot()?;
     args.write.as_deref().map_or(Ok(()), require_robot_file)?;
-    let camera = OpenCamera::open(&args.camera)?;
-    let output = camera.intrinsics(args.robot_camera(&robot).as_ref())?;
+    let camera = OpenCamera::open_with(&args.camera, args.gyro, &robot.mount)?;
+    let output = camera.intrinsics(args.intrinsics, &robot.camera)?;
     let seconds = args.options.time_limit.unwrap_or(CHECK_S);
     if !args.options.common.quiet {
         console::print(&format!(
-            "Listening for {seconds:.0} s; the base does not drive. Leave the robot at rest for 3 s, then push it straight ahead by 0.5 m."
+            "Listening for {seconds} s; the base does not drive. Leave the robot at rest for 3 s, then push it straight ahead by 0.5 m."
         ));
     }
     let report = check_hardware(CheckRequest { base: &args.base, camera, output, robot: &robot, seconds })?;

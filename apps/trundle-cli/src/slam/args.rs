@@ -116,11 +116,18 @@ pub struct FirstCameraArgs {
 /// The camera of the images.
 #[derive(Debug, Args)]
 pub struct CameraArgs {
-    /// Preset freiburg1, freiburg2, freiburg3, kinect_v2, or a camera file of trundle, ORB-SLAM, stella_vslam, ROS or Open3D
+    /// Preset freiburg1, freiburg2, freiburg3, kinect_v2, or a camera file of trundle, ORB-SLAM, stella_vslam, Kalibr, ROS or Open3D
     /// [default: the recording's, or the one in the folder, camera.toml first, else freiburg1 with a warning]
     #[arg(long, value_name = "PRESET|FILE")]
     pub camera: Option<String>,
     /// Depth units per metre [default: the camera's]
     #[arg(long, value_name = "N", value_parser = NumberArg::above_zero("units per metre"), allow_negative_numbers = true)]
     pub depth_scale: Option<f64>,
+}
+
+impl CameraArgs {
+    /// Preset or file, and depth units per metre.
+    pub fn chosen(&self) -> (Option<&str>, Option<f64>) {
+        (self.camera.as_deref(), self.depth_scale)
+    }
 }

@@ -31,17 +31,6 @@ pub enum VocabularyCommand {
     Recall(RecallArgs),
 }
 
-impl VocabularyArgs {
-    /// Options of every command, if this one takes them.
-    pub fn common(&self) -> Option<&Common> {
-        match &self.command {
-            VocabularyCommand::Train(args) => Some(&args.common),
-            VocabularyCommand::Recall(args) => Some(&args.common),
-            _ => None,
-        }
-    }
-}
-
 /// Sources of images.
 #[derive(Debug, Args)]
 pub struct Sources {

@@ -105,6 +105,7 @@ fn a_file_of_another_kind_is_named_whatever_its_name_by_every_command() {
         refusal(&["slam", text(&ros1)]).contains("run.log: the bag is truncated"),
         "a ROS 1 bag without images"
     );
+    assert!(refusal(&["replay", text(&ros1)]).contains("run.log: the bag is truncated"), "sensors of a bag");
     let picture = file("map.yaml", b"P5\n2 2\n255\n\0\0\0\0");
     let mesh = file("room.glb", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let empty = file("run.mcap", b"");
@@ -117,8 +118,7 @@ fn a_file_of_another_kind_is_named_whatever_its_name_by_every_command() {
     ] {
         let file = text(file);
         for arguments in [
-            &["replay", file][..],
-            &["plan", file, poses[0], poses[1]],
+            &["plan", file, poses[0], poses[1]][..],
             &["dock", file, poses[0], poses[1]],
             &["sim", file],
             &["demo", "--scene", file],
@@ -126,6 +126,10 @@ fn a_file_of_another_kind_is_named_whatever_its_name_by_every_command() {
         ] {
             let sentence = refusal(arguments);
             assert!(words.iter().all(|word| sentence.contains(word)), "{arguments:?}: {sentence}");
+        }
+        if file != text(&ros1) {
+            let sentence = refusal(&["replay", file]);
+            assert!(words.iter().all(|word| sentence.contains(word)), "replay: {sentence}");
         }
     }
     assert!(

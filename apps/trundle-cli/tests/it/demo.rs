@@ -27,7 +27,10 @@ fn the_demo_reaches_its_goal_and_replays_byte_for_byte() {
     let output = trundle(&["replay", text(&cut), "--recover", "--quiet", "--out", text(&again)]);
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{message}");
-    assert!(message.contains(&format!("cut at byte {}; ", bytes.len() / 3)), "{message}");
+    let place = format!("cut at byte {}; ", bytes.len() / 3);
+    assert!(message.contains(&place), "{message}");
+    assert!(summary(&again)["cut"].as_str().unwrap().contains(&place), "{}", summary(&again));
+    assert_eq!(numbers["cut"], serde_json::Value::Null);
     let output = trundle(&["replay", text(&recording), "--threads", "1", "--quiet", "--out", text(&again)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     for name in ["map.pgm", "map.yaml", "trajectory.txt", "groundtruth.txt", "report.html", "recording.mcap"]
@@ -35,6 +38,16 @@ fn the_demo_reaches_its_goal_and_replays_byte_for_byte() {
         let bytes = |folder: &std::path::Path| fs::read(folder.join(name)).unwrap();
         assert!(bytes(&live) == bytes(&again), "{name} differs");
     }
+}
+
+#[test]
+fn a_time_limit_of_a_fraction_of_a_second_is_named_as_given() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let output = trundle(&["demo", "--direct", "--time-limit", "0.3", "--out", text(&out)]);
+    let message = String::from_utf8_lossy(&output.stdout);
+    assert!(message.contains("less than 1 MB in 0.3 s"), "{message}");
+    assert!(message.contains("the time limit of 0.3 s ended the run"), "{message}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use crate::plan::write_room;
 use crate::program::{refusal, summary, text, trundle};
 use std::fs;
+use trundle::core::Hypotenuse;
 
 /// A robot of 0.6 x 0.4 m in a corridor of 1 m, 10 cm to the side of its goal.
 const PROBLEM: &str = "trundle-corridors 1
@@ -28,7 +29,7 @@ fn a_robot_beside_its_goal_gets_there_step_by_step() {
     assert!(bound > 0.0 && bound <= time + 1e-9, "{bound} {time}");
     let steps = fs::read_to_string(out.join("steps.csv")).unwrap();
     let last: Vec<f64> = steps.lines().last().unwrap().split(',').map(|v| v.parse().unwrap()).collect();
-    assert!((last[4] - 0.1).hypot(last[5]) < 1e-6, "{last:?}");
+    assert!((last[4] - 0.1).hypotenuse(last[5]) < 1e-6, "{last:?}");
     assert!(fs::metadata(out.join("dock.png")).unwrap().len() > 1000);
 }
 

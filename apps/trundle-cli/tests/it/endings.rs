@@ -108,6 +108,9 @@ fn a_stopped_drive_is_a_recording_and_stopped_slam_and_map_write_what_they_know(
     let output = signalled(&["map", text(&log), "--particles=900", "--out", text(&map)], &map, "-INT");
     assert_stopped(&output, &map, CTRL_C);
     assert!(map.join("map.yaml").exists() && map.join("trajectory.txt").exists());
+    let numbers = summary(&map);
+    let [read, scans] = ["scans_read", "scans"].map(|name| numbers[name].as_u64().unwrap());
+    assert!(read < scans && read >= numbers["processed"].as_u64().unwrap(), "{numbers}");
 }
 
 /// Whether the tracking of `trundle slam`, whose results come into `folder`, is over: its recording has its end.
@@ -154,6 +157,22 @@ fn a_stopped_run_and_its_stopped_replay_have_their_results() {
 
     let output = signalled(&["replay", text(&recording), "--out", text(&trials)], &trials, "-TERM");
     assert_stopped(&output, &trials, TERMINATED);
+}
+
+/// The images that a stopped calibration has not read are no fault of the recording.
+#[test]
+fn a_stopped_calibration_names_no_fault_of_its_recording() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("run");
+    trundle(&["demo", "--direct", "--time-limit", "6", "--record", "all", "--quiet", "--out", text(&out)]);
+    let recording = out.join("recording.mcap");
+    let child = start(&["calibrate", "mount", text(&recording)]);
+    std::thread::sleep(Duration::from_secs(1));
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(143), "{message}");
+    assert!(message.contains("stopped by SIGTERM") && !message.contains("floor in"), "{message}");
 }
 
 #[test]
@@ -251,6 +270,62 @@ fn files_of_a_killed_run_are_named_and_removed() {
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && message.contains("left by a run that was killed"), "{message}");
     assert!(!writes_in(scratch.path()) && out.exists());
+}
+
+/// The place of a hidden folder stands in its file `owner`, which no process holds after a kill.
+#[test]
+fn the_hidden_folder_of_a_killed_run_into_a_single_file_is_named_and_removed() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().canonicalize().unwrap();
+    let [map, left] = ["map.yaml", ".trundle-killed"].map(|name| folder.join(name));
+    fs::create_dir(&left).unwrap();
+    fs::write(left.join("owner"), text(&map)).unwrap();
+    let output = trundle(&["sim", "room", "--quiet", "--map", text(&map)]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.contains(".trundle-killed was left by a run that was killed"), "{message}");
+    assert!(output.status.success() && map.exists() && !writes_in(&folder));
+}
+
+/// Runs `trundle args` on a disk that takes no file of more than `kilobytes`.
+fn on_full_disk(kilobytes: usize, args: &[&str]) -> Output {
+    let script = format!("ulimit -f {}; exec \"$0\" \"$@\"", 2 * kilobytes); // in blocks of 512 bytes
+    Command::new("sh")
+        .args(["-c", &script, env!("CARGO_BIN_EXE_trundle")])
+        .args(args)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn every_file_that_a_full_disk_refuses_is_named_and_no_missing_one_is_shown() {
+    let scratch = tempfile::tempdir().unwrap();
+    let [data, slam, bag, tum, map] =
+        ["data", "slam", "bag", "tum", "map.yaml"].map(|name| scratch.path().join(name));
+    let sim = ["sim", "room", "--quiet", "--duration", "2", "--rate", "4", "--record", text(&data)];
+    assert!(trundle(&sim).status.success());
+    let run = |args: &[&str]| {
+        let output = on_full_disk(30, args);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(3), "{args:?}: {message}");
+        assert!(message.contains("trundle: cannot write "), "{message}");
+        (message, String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let (message, shown) = run(&["slam", text(&data), "--height=0.45", "--tilt=8", "--out", text(&slam)]);
+    assert!(message.contains("recording.mcap") && message.contains("visual.map, report.html"), "{message}");
+    assert!(!slam.join("report.html").exists() && !shown.contains("See "), "{shown}");
+    assert!(fs::read_to_string(slam.join("log.txt")).unwrap().contains("report.html"));
+
+    let (message, _) = run(&["convert", text(&data), text(&bag), "--to", "bag"]);
+    assert!(message.contains("bag.mcap") && !bag.exists(), "{message}");
+    run(&["convert", text(&data), text(&tum), "--to", "tum"]);
+    let images = |list: &str| fs::read_to_string(tum.join(list)).unwrap_or_default();
+    let listed = ["rgb.txt", "depth.txt"].map(|list| images(list).lines().skip(1).count());
+    assert!(listed[0] == listed[1] && listed[0] < 8, "{listed:?}");
+
+    let (message, _) = run(&["sim", "room", "--quiet", "--resolution=0.02", "--map", text(&map)]);
+    assert!(message.contains("map.pgm") && map.exists(), "{message}");
+    assert!(!writes_in(scratch.path()));
 }
 
 /// A limited file size simulates a full disk.

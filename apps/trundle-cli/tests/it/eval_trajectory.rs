@@ -45,6 +45,16 @@ fn the_numbers_are_those_of_evo() {
 }
 
 #[test]
+fn line_ends_of_old_mac_programs_are_read() {
+    let scratch = tempfile::tempdir().unwrap();
+    let reference = data("trajectories/freiburg1_xyz-groundtruth.txt");
+    let mac = scratch.path().join("mac.txt");
+    std::fs::write(&mac, std::fs::read_to_string(&reference).unwrap().replace('\n', "\r")).unwrap();
+    let output = trundle(&["eval", "trajectory", text(&reference), text(&mac)]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
 fn poses_without_stamps_of_their_own_and_short_trajectories_are_refused() {
     let scratch = tempfile::tempdir().unwrap();
     let (rounded, short) = (scratch.path().join("rounded.txt"), scratch.path().join("short.txt"));

@@ -33,6 +33,19 @@ fn a_course_of_mrpb_is_driven() {
 }
 
 #[test]
+fn a_hall_of_a_given_map_is_driven() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let output =
+        trundle(&["experiment", "known-map", "--only", "hall, seed 3", "--seeds", "3", "--out", text(&out)]);
+    let found = summary(&out);
+    assert!(output.status.success(), "{found}");
+    assert_eq!((found["runs"].as_u64(), found["arrived"].as_u64()), (Some(1), Some(1)), "{found}");
+    assert!(found["largest_estimate_error_m"].as_f64().unwrap() < 0.1, "{found}");
+    assert!(refusal(&["experiment", "known-map", "--only", "cellar"]).contains("hall, maze, changed room"));
+}
+
+#[test]
 fn a_plain_room_without_people_has_no_false_arrival() {
     let scratch = tempfile::tempdir().unwrap();
     let out = scratch.path().join("out");

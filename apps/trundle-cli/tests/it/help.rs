@@ -3,12 +3,17 @@
 use crate::program::{refusal, trundle};
 
 /// Every command and subcommand.
-const COMMANDS: [&[&str]; 40] = [
+const COMMANDS: [&[&str]; 46] = [
     &[],
     &["demo"],
     &["replay"],
     &["slam"],
     &["map"],
+    &["map", "crop"],
+    &["map", "rotate"],
+    &["map", "diff"],
+    &["map", "merge"],
+    &["map", "rooms"],
     &["calibrate"],
     &["calibrate", "camera"],
     &["calibrate", "mount"],
@@ -29,6 +34,7 @@ const COMMANDS: [&[&str]; 40] = [
     &["experiment", "people"],
     &["experiment", "barn"],
     &["experiment", "mrpb"],
+    &["experiment", "known-map"],
     &["experiment", "real-time"],
     &["experiment", "corridor"],
     &["experiment", "look-alikes"],

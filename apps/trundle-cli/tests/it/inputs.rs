@@ -41,6 +41,24 @@ fn ros_bags_become_maps_and_their_trajectories_are_judged() {
 }
 
 #[test]
+fn a_map_of_the_images_of_a_bag_names_their_topics() {
+    let scratch = tempfile::tempdir().unwrap();
+    let [data, bag, out] = ["data", "bag", "out"].map(|name| scratch.path().join(name));
+    let sim = ["sim", "room", "--quiet", "--duration", "2", "--rate", "5", "--record", text(&data)];
+    assert!(trundle(&sim).status.success());
+    assert!(trundle(&["convert", text(&data), text(&bag), "--to", "bag", "--quiet"]).status.success());
+    let output = trundle(&["map", text(&bag.join("bag.mcap")), "--particles=3", "--out", text(&out)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let numbers = summary(&out);
+    let topic = |name: &str| numbers[name].as_str().unwrap_or_default().to_owned();
+    assert!(topic("scan_topic").contains("depth") && topic("odometry_topic") == "/odom", "{numbers}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("odometry is from"), "in the table too");
+    let output = trundle(&["map", text(&data), "--particles=3", "--quiet", "--out", text(&out)]);
+    assert!(output.status.success());
+    assert_eq!(summary(&out)["scan_topic"], serde_json::Value::Null, "a folder has no topics");
+}
+
+#[test]
 fn a_map_is_judged_where_it_lies_and_where_it_fits() {
     let scratch = tempfile::tempdir().unwrap();
     let room = "########\n#......#\n#..##..#\n#......#\n#......#\n########";

@@ -9,7 +9,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
 /// Version of the messages, as the page has it.
-const WIRE_VERSION: u32 = 3;
+const WIRE_VERSION: u32 = 4;
 
 /// A program with its live page.
 struct LiveProgram {
@@ -201,8 +201,8 @@ fn the_page_drives_a_simulated_base_and_its_silence_stops_it() {
     let stopped = browser.wait_for("state", |state| state["state"] == "standing");
     assert!(stopped["time"].as_f64().unwrap() - driven["time"].as_f64().unwrap() < 1.0, "{driven} {stopped}");
     browser.rest();
-    // Tiles, scan, image, depth.
-    assert!([1, 2, 4, 8].iter().all(|kind| browser.kinds.contains(kind)), "{:?}", browser.kinds);
+    // Tiles, scan, image; depth is sent only while it is chosen.
+    assert!([1, 2, 4].iter().all(|kind| browser.kinds.contains(kind)), "{:?}", browser.kinds);
     program.end();
     assert!(summary(&out)["path_length_m"].as_f64().unwrap() > 0.05);
 }
@@ -245,8 +245,8 @@ fn a_sequence_is_shown_while_it_is_tracked_and_its_results_are_the_same() {
     assert!(states.iter().any(|state| state["state"] == "tracking"), "{states:?}");
     let series = notes.iter().rfind(|note| note["type"] == "series").unwrap();
     assert_eq!((&series["unit"], &series["total"]), (&json!("images"), &json!(80)), "{series}");
-    // Tiles, image, visual map, features, depth.
-    assert!([1, 4, 6, 7, 8].iter().all(|kind| browser.kinds.contains(kind)), "{:?}", browser.kinds);
+    // Tiles, image, visual map, features; depth is sent only while it is chosen.
+    assert!([1, 4, 6, 7].iter().all(|kind| browser.kinds.contains(kind)), "{:?}", browser.kinds);
     assert!(program.end().status.success());
     let names = ["trajectory.txt", "map.pgm", "visual.map", "recording.mcap"];
     assert!(files(&plain, &names) == files(&shown, &names));

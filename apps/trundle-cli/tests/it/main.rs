@@ -20,6 +20,7 @@ mod live_page;
 mod live_run;
 mod logs;
 mod map;
+mod map_tools;
 mod missions;
 #[cfg(target_os = "linux")]
 mod no_open_port;

@@ -3,6 +3,7 @@
 use crate::program::{refusal, shared, summary, text, trundle};
 use std::fs;
 use std::path::Path;
+use trundle::core::Hypotenuse;
 
 /// The first `scans` scans of a log, in a separate file.
 fn beginning(log: &Path, scans: usize, to: &Path) {
@@ -94,7 +95,7 @@ fn a_saved_map_is_continued_and_used_for_localization() {
         for line in found.lines() {
             let same = original.lines().find(|o| o.split(' ').next() == line.split(' ').next()).unwrap();
             let (a, b) = (pose(line), pose(same));
-            assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 0.15, "{name}: {line} for {same}");
+            assert!((a[0] - b[0]).hypotenuse(a[1] - b[1]) < 0.15, "{name}: {line} for {same}");
         }
         assert_eq!(out.join("filter.map").exists(), name == "on");
         assert!(fs::read(out.join("overview.png")).unwrap().starts_with(b"\x89PNG"), "{name}");
@@ -150,8 +151,8 @@ fn the_old_map_survives_a_death_at_any_moment_of_saving() {
         std::thread::sleep(Duration::from_micros(150 * k));
         child.kill().unwrap();
         died += usize::from(!child.wait().unwrap().success());
-        let config =
-            trundle::mapping::ParticleConfig { particles: 4, ..trundle::mapping::ParticleConfig::default() };
+        let mut config = trundle::mapping::ParticleConfig::default();
+        config.particles = 4;
         let is_whole = |folder: &Path| {
             fs::read(folder.join("filter.map"))
                 .is_ok_and(|bytes| trundle::mapping::ParticleMapper::load(&bytes, config.clone()).is_ok())

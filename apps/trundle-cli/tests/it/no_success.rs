@@ -105,3 +105,35 @@ fn images_of_one_timestamp_fail() {
     assert_eq!(run.status.code(), Some(1), "{message}");
     assert!(message.contains("images only 1 could be used: the others have the same timestamp"), "{message}");
 }
+
+#[test]
+fn a_map_of_scans_with_one_timestamp_or_of_hardly_any_scan_fails() {
+    let scratch = tempfile::tempdir().unwrap();
+    let log = log_of_scans(scratch.path(), 4.0, 20);
+    let text = std::fs::read_to_string(&log).unwrap();
+    let out = scratch.path().join("out");
+    let map = |text: &str| {
+        std::fs::write(&log, text).unwrap();
+        let run = trundle(&["map", &log, "--quiet", "--out", out.to_str().unwrap()]);
+        (run.status.code(), String::from_utf8(run.stderr).unwrap())
+    };
+    let one_time: String = text
+        .lines()
+        .map(|line| {
+            let words: Vec<&str> = line.split(' ').collect();
+            let (last, rest) = (words.len() - 3, words.len() - 1);
+            format!("{} 0 {} 0\n", words[..last].join(" "), words[rest - 1])
+        })
+        .collect();
+    let (code, message) = map(&one_time);
+    assert_eq!(code, Some(1), "{message}");
+    assert!(message.contains("all 20 scans have the timestamp 0"), "{message}");
+    let broken: String = text
+        .lines()
+        .enumerate()
+        .map(|(i, line)| if i == 0 { format!("{line}\n") } else { "FLASER 181 1 2\n".to_owned() })
+        .collect();
+    let (code, message) = map(&broken);
+    assert_eq!(code, Some(1), "{message}");
+    assert!(message.contains("only 1 of 20 scans could be used"), "{message}");
+}

@@ -3,6 +3,7 @@
 use crate::program::{summary, text, trundle};
 use std::fs;
 use std::path::{Path, PathBuf};
+use trundle::core::Hypotenuse;
 
 /// A room of 6 x 4 m with a wall across, open at the top.
 pub fn write_room(folder: &std::path::Path) -> std::path::PathBuf {
@@ -33,7 +34,7 @@ fn a_plan_leads_around_the_wall() {
     assert!(length > 5.0 && length < 9.0, "{length}");
     let trajectory = fs::read_to_string(out.join("trajectory.csv")).unwrap();
     let last: Vec<f64> = trajectory.lines().last().unwrap().split(',').map(|v| v.parse().unwrap()).collect();
-    assert!((last[1] - 5.0).hypot(last[2] - 1.0) < 2e-3, "{last:?}");
+    assert!((last[1] - 5.0).hypotenuse(last[2] - 1.0) < 2e-3, "{last:?}");
     assert!((last[3] + std::f64::consts::FRAC_PI_2).abs() < 1e-3, "{last:?}");
 }
 
@@ -109,10 +110,10 @@ fn named_goals_are_driven_to_in_a_row_and_stages_are_timed() {
         assert!(fs::metadata(room.out().join(name)).unwrap().len() > 20, "{name}");
     }
     let rows = trajectory(&room.out());
-    let rests = rows.iter().any(|row| (row[1] - 5.0).hypot(row[2] - 1.0) < 2e-3 && row[4] == 0.0);
+    let rests = rows.iter().any(|row| (row[1] - 5.0).hypotenuse(row[2] - 1.0) < 2e-3 && row[4] == 0.0);
     assert!(rests, "no rest at the far door");
     let last = &rows[rows.len() - 1];
-    assert!((last[1] - 2.0).hypot(last[2] - 3.0) < 2e-3, "{last:?}");
+    assert!((last[1] - 2.0).hypotenuse(last[2] - 3.0) < 2e-3, "{last:?}");
 }
 
 #[test]
@@ -249,7 +250,7 @@ fn coefficients_are_the_curve_and_active_constraints_are_active() {
     let curve = numbers(&room.out().join("curve.csv"));
     assert!(curve.len() > 100 && pieces.len() > 5);
     for row in &curve {
-        let off = dense.iter().map(|(x, y)| (x - row[2]).hypot(y - row[3])).fold(9.0, f64::min);
+        let off = dense.iter().map(|(x, y)| (x - row[2]).hypotenuse(y - row[3])).fold(9.0, f64::min);
         assert!(off < 1e-3, "{row:?}: {off}");
     }
     let table = numbers(&room.out().join("coefficients.csv"));
@@ -273,7 +274,7 @@ fn coefficients_are_the_curve_and_active_constraints_are_active() {
         let (x, y) = control(row[0], row[1], row[2] as usize);
         let beyond = row[3] * x + row[4] * y - row[5];
         assert!(beyond.abs() < 1e-3 && row[6] > 0.0, "{beyond} m beyond: {row:?}");
-        assert!((row[3].hypot(row[4]) - 1.0).abs() < 1e-5, "{row:?}");
+        assert!((row[3].hypotenuse(row[4]) - 1.0).abs() < 1e-5, "{row:?}");
     }
 }
 
@@ -339,7 +340,46 @@ fn errors_are_named_clearly() {
     let elsewhere = write_mask(room.scratch.path(), "beside", (254, 0), TRINARY);
     let yaml = fs::read_to_string(&elsewhere).unwrap().replace("[0.0, 0.0", "[50.0, 0.0");
     fs::write(&elsewhere, yaml).unwrap();
+    let file = |name: &str, content: &str| {
+        let path = room.scratch.path().join(name);
+        fs::write(&path, content).unwrap();
+        path
+    };
+    let (none, zero) = (file("none.toml", ""), file("zero.geojson", ""));
+    let empty = file("empty.geojson", r#"{"type": "FeatureCollection", "features": []}"#);
+    let node = |id: u32, x: f64, y: f64| {
+        format!(
+            r#"{{"properties": {{"id": {id}}}, "geometry": {{"type": "Point", "coordinates": [{x}, {y}]}}}}"#
+        )
+    };
+    let graph =
+        |name: &str, nodes: [String; 2]| file(name, &format!(r#"{{"features": [{}]}}"#, nodes.join(",")));
+    let degrees = graph("degrees.geojson", [node(1, 8.5401, 47.3701), node(2, 8.5403, 47.3702)]);
+    let far = graph("far.geojson", [node(1, 80.0, 1.0), node(2, 90.0, 1.0)]);
+    let out = room.out();
+    let nowhere =
+        ["plan", text(&room.map), "--from=1,1,0", "--goal=a", "--places", text(&none), "--out", text(&out)];
+    let complaint = String::from_utf8(trundle(&nowhere).stderr).unwrap();
+    assert!(complaint.contains("no place 'a'; the file has no place, expected tables [NAME]"), "{complaint}");
     for (arguments, message) in [
+        (
+            vec!["--from=desk", "--goal=desk", "--graph", text(&zero)],
+            "zero.geojson: this is an empty file, expected a GeoJSON file of way-points",
+        ),
+        (
+            vec!["--from=desk", "--goal=desk", "--graph", text(&empty)],
+            "there is no node: the list `features` is empty",
+        ),
+        (
+            vec!["--from=desk", "--goal=desk", "--graph", text(&degrees)],
+            "no node lies on the map, the first is at (8.5401, 47.3701) m, the map has x 0.00 to 6.00 m, y 0.00 to 4.00 m: \
+             all points lie within 0.2 mm: are they longitude and latitude in degrees?",
+        ),
+        (vec!["--from=desk", "--goal=desk", "--graph", text(&far)], "is it the graph of this map?"),
+        (
+            vec!["--from=desk", "--goal=8.54,47.37,0"],
+            "the goal is off the map, which has x 0.00 to 6.00 m, y 0.00 to 4.00 m",
+        ),
         (vec!["--from=desk", "--goal=kitchen"], "places.toml: no place 'kitchen'; there are: desk, far door"),
         (vec!["--from=desk", "--goal=1,2"], "2 numbers, expected 3: X,Y,DEG"),
         (vec!["--from=0.05,0.05,0", "--goal=desk"], "the robot does not fit at the start"),

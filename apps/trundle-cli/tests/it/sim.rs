@@ -172,7 +172,7 @@ fn numbers_and_places_that_cannot_be() {
     }
     let map = scratch.path().join("map.yaml");
     let sentence = refusal(&["sim", "demo", "--resolution", "0.0001", "--map", text(&map)]);
-    assert!(sentence.contains("--resolution is 0.0001 m, expected a number in m, 0.001 to 10"), "{sentence}");
+    assert!(sentence.contains("--resolution is 0.0001 m, expected a number in m, 0.001 to 2"), "{sentence}");
     let sentence = refusal(&["sim", "demo", "--band", "0.5", "0.2", "--map", text(&map)]);
     assert!(sentence.contains("high end of the height band is 0.2 m, expected more than 0.5"), "{sentence}");
     let taken = file(scratch.path(), "taken", "mine");

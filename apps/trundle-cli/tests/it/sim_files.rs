@@ -119,7 +119,7 @@ fn a_map_raised_to_walls_is_driven_in_and_maps_back_to_itself() {
     fs::write(scratch.path().join("room.pgm"), "P5\n100000 100000\n255\n").unwrap();
     let sentence = refusal(&["sim", text(&room)]);
     assert!(sentence.contains("room.pgm: size is 100000 x 100000 px, expected 1 to 268435456"), "{sentence}");
-    let yaml = fs::read_to_string(&room).unwrap().replace("resolution: 0.05", "resolution: 9.0");
+    let yaml = fs::read_to_string(&room).unwrap().replace("resolution: 0.05", "resolution: 2.0");
     let mut pgm = b"P5\n2000 2000\n255\n".to_vec();
     pgm.resize(pgm.len() + 2000 * 2000, 254);
     fs::write(scratch.path().join("room.pgm"), pgm).unwrap();

@@ -90,6 +90,11 @@ fn a_saved_map_is_the_same_on_any_threads_and_is_begun_with() {
     let located = numbers["frames_ok"].as_u64().unwrap() + numbers["frames_weak"].as_u64().unwrap();
     assert!(located >= 38, "{numbers}");
     assert!(fs::read(again.join("visual.map")).unwrap() == fs::read(&map).unwrap(), "it was only to locate");
+    let located =
+        ["slam", text(&sequence), "--map", text(&map), "--localise", "--depth-scale", "2500", "--quiet"];
+    let output = trundle(&[&located[..], &["--out", text(&again)]].concat());
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(1) && complaint.contains("depth_scale"), "{complaint}");
     let mut damaged = fs::read(&map).unwrap();
     let middle = damaged.len() / 2;
     damaged[middle] ^= 4;
@@ -124,4 +129,44 @@ fn a_depth_scale_that_no_file_holds_is_found_by_the_images() {
     assert_eq!(summary(&out)["frames_lost"], 0);
     let message = slam(&["--depth-scale=5000"]);
     assert!(!message.contains("depth scale"), "{message}");
+}
+
+#[test]
+fn a_wrong_depth_scale_is_found_by_ground_truth_and_by_odometry() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (data, out, drive) =
+        (scratch.path().join("in"), scratch.path().join("out"), scratch.path().join("drive.txt"));
+    std::fs::write(&drive, "0 0.4 0.5\n2 0.4 -0.5\n4 0 0\n").unwrap();
+    let sim = ["sim", "office", "--quiet", "--drive", text(&drive), "--record", text(&data)];
+    assert!(trundle(&sim).status.success());
+    let slam = |scale: &str| {
+        let common = ["slam", text(&data), "--quiet", "--record=none", "--depth-scale", scale, "--out"];
+        let output = trundle(&[&common[..], &[text(&out)]].concat());
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let fit = "about 5000 fits (units per metre)";
+    assert_eq!(slam("5000").0, Some(0));
+    assert_eq!(summary(&out)["depth_scale_assumed"], false);
+    let (code, message) = slam("2500");
+    assert_eq!(code, Some(1), "{message}");
+    let problem = "2.00 times as large as by groundtruth.txt with depth_scale = 2500";
+    assert!(message.contains(problem) && message.contains(fit), "{message}");
+    assert!(summary(&out)["failure"].as_str().unwrap().contains(fit));
+    std::fs::remove_file(data.join("groundtruth.txt")).unwrap();
+    let (code, message) = slam("10000");
+    assert_eq!(code, Some(1), "{message}");
+    assert!(message.contains("by odometry.txt") && message.contains(fit), "{message}");
+}
+
+#[test]
+fn a_map_by_odometry_of_another_clock_names_both_ranges_of_time() {
+    let scratch = tempfile::tempdir().unwrap();
+    let data = scratch.path().join("in");
+    assert!(trundle(&["sim", "room", "--quiet", "--duration=0.5", "--record", text(&data)]).status.success());
+    std::fs::write(data.join("odometry.txt"), "1000 0 0 0\n1001 0.1 0 0\n").unwrap();
+    let map = trundle(&["map", text(&data), "--quiet", "--out", text(&scratch.path().join("out"))]);
+    let message = String::from_utf8(map.stderr).unwrap();
+    assert_eq!(map.status.code(), Some(2), "{message}");
+    let both = message.contains("the images are of 0") && message.contains("the poses of 1000");
+    assert!(both && message.contains("odometry.txt") && message.contains("one clock"), "{message}");
 }

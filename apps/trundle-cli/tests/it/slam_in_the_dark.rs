@@ -40,8 +40,26 @@ fn frames_in_the_dark_are_placed_by_odometry_and_missing_ones_are_reported() {
     assert_eq!((code, &numbers["frames_without_pose"]), (Some(0), &0.into()), "{numbers}");
     assert_eq!(numbers["trajectory"], "fused");
     assert_eq!(numbers["frames_posed"], numbers["frames"]);
+    let [all, by_images, by_odometry] =
+        ["frames_posed", "frames_posed_by_images", "frames_posed_by_odometry"]
+            .map(|name| numbers[name].as_u64().unwrap());
+    assert!(all == by_images + by_odometry && 2 * by_odometry > all, "{numbers}");
     assert!(numbers["ate_rmse_m"].as_f64().unwrap() < 0.05, "{numbers}");
     assert!(!fused.join("recording.mcap").exists());
+
+    // Images of the dark alone: all poses are of odometry.
+    let black = scratch.path().join("black");
+    let lists = ["rgb.txt", "depth.txt"].map(|name| data.join(name));
+    let whole = lists.clone().map(|list| fs::read_to_string(list).unwrap());
+    for (list, text) in lists.iter().zip(&whole) {
+        let is_dark = |line: &&str| line.starts_with(['4', '5', '6', '7']);
+        fs::write(list, text.lines().filter(is_dark).map(|line| format!("{line}\n")).collect::<String>())
+            .unwrap();
+    }
+    let (code, numbers) = track(&data, &black, &["--record", "none"]);
+    assert_eq!((code, &numbers["frames_posed_by_images"]), (Some(1), &0.into()), "{numbers}");
+    assert_eq!(numbers["frames_posed_by_odometry"], numbers["frames"], "{numbers}");
+    lists.iter().zip(&whole).for_each(|(list, text)| fs::write(list, text).unwrap());
 
     // The last visual map alone holds the frames after the dark.
     let (code, numbers) = track(&data, &visual, &["--visual-only", "--record", "events"]);

@@ -3,12 +3,14 @@
 use super::recording::CalibrationInput;
 use crate::{AppError, StepProgress, stop};
 use trundle_core::{Pose3, RgbdImage, Stamp};
-use trundle_slam::{RgbdSlam, SlamConfig};
+use trundle_slam::RgbdSlam;
 
 /// The camera's trajectory over a recording.
 pub(super) struct CameraTrack {
     /// `visual_from_camera`, by rising stamp.
     pub(super) poses: Vec<(Stamp, Pose3)>,
+    /// Number of images that are located.
+    located: usize,
 }
 
 /// Fraction of the images that must be located: 0.5. Source: ours.
@@ -17,14 +19,15 @@ const MIN_LOCATED_RATIO: f64 = 0.5;
 /// Tracks all images. Wheels and mount give no prior: they may be wrong. `on_image` receives each image.
 ///
 /// # Errors
-/// When the images cannot be read, most are not located, or the user stops.
+/// When the images cannot be read, or the user stops.
 pub(super) fn track_camera(
     input: &CalibrationInput,
     progress: &dyn StepProgress,
     mut on_image: impl FnMut(&RgbdImage),
 ) -> Result<CameraTrack, AppError> {
     let images = &input.images;
-    let config = SlamConfig { kept_frames: usize::MAX, ..images.robot.slam.clone() };
+    let mut config = images.robot.slam.clone();
+    config.kept_frames = usize::MAX;
     let mut slam =
         RgbdSlam::new(images.camera.model.camera, config)?.starting_at(images.robot.mount.base_from_camera());
     progress.begin(Some(images.len()));
@@ -45,13 +48,22 @@ pub(super) fn track_camera(
     }
     progress.end();
     slam.finish_refining();
-    if (located as f64) < MIN_LOCATED_RATIO * images.len() as f64 {
-        let problem = format!(
-            "only {located} of {} images are located, expected half or more; record in a room with texture and \
-             light, and turn more slowly",
-            images.len()
-        );
-        return Err(input.refused(&problem));
+    Ok(CameraTrack { poses: slam.trajectory(), located })
+}
+
+impl CameraTrack {
+    /// This trajectory, if it is of most images of `input`.
+    ///
+    /// # Errors
+    /// When most images are not located.
+    pub(super) fn of_most_images(self, input: &CalibrationInput) -> Result<Self, AppError> {
+        let (located, images) = (self.located, input.images.len());
+        if located as f64 >= MIN_LOCATED_RATIO * images as f64 {
+            return Ok(self);
+        }
+        Err(input.refused(&format!(
+            "only {located} of {images} images are located, expected half or more; record in a room with texture and \
+             light, and turn more slowly"
+        )))
     }
-    Ok(CameraTrack { poses: slam.trajectory() })
 }

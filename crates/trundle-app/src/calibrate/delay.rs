@@ -14,7 +14,7 @@ pub fn calibrate_delay(
     input: &CalibrationInput,
     progress: &dyn StepProgress,
 ) -> Result<Calibration, AppError> {
-    let track = track_camera(input, progress, |_| ())?;
+    let track = track_camera(input, progress, |_| ())?.of_most_images(input)?;
     let axis = turn_axis(&track.poses, input.expected_up()).map_err(|error| input.refused(&error))?;
     let found =
         estimate_image_delay(&track.poses, axis, &input.gyro()).map_err(|error| input.refused(&error))?;

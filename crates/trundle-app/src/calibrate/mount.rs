@@ -31,9 +31,9 @@ pub fn calibrate_mount(
     progress: &dyn StepProgress,
 ) -> Result<Calibration, AppError> {
     let mut floor = FloorImages::new(input);
-    let track = track_camera(input, progress, |image| floor.add(image));
+    let track = track_camera(input, progress, |image| floor.add(image))?;
     let views = floor.views()?;
-    let track = track?;
+    let track = track.of_most_images(input)?;
     let up = views.iter().map(|view| view.up).sum::<Vector3>().normalize();
     let mut calibration = Calibration::default();
     let axis = turn_axis(&track.poses, up);

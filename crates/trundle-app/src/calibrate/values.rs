@@ -3,13 +3,13 @@
 /// A calibrated value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CalibratedValue {
-    /// Name: for a key of the robot file the key.
+    /// Name of the value; the key, if the value is a setting of the robot file.
     pub name: String,
     /// Whether the name is a key of the robot file, which `Calibration::write` sets.
     pub is_key: bool,
     /// The value.
     pub value: f64,
-    /// Standard deviation; `None` of a number that is only copied.
+    /// Standard deviation; `None` for a number without an estimate.
     pub sigma: Option<f64>,
     /// Unit of both.
     pub unit: &'static str,

@@ -20,7 +20,7 @@ pub fn calibrate_wheels(
     input: &CalibrationInput,
     progress: &dyn StepProgress,
 ) -> Result<Calibration, AppError> {
-    let track = track_camera(input, progress, |_| ())?;
+    let track = track_camera(input, progress, |_| ())?.of_most_images(input)?;
     let refused = |error: CalibrationError| input.refused(&error);
     let drive = &input.images.robot.drive;
     let axis = turn_axis(&track.poses, input.expected_up()).map_err(refused)?;

@@ -70,13 +70,11 @@ impl DockingRequest {
 
     /// The robot's `docking.planner` if a robot is given, else the planner's own defaults; method and margin as requested.
     fn planner_config(&self) -> DockingConfig {
-        let config =
+        let mut config =
             self.robot.as_ref().map_or_else(DockingConfig::default, |robot| robot.docking.planner.clone());
-        DockingConfig {
-            method: self.method.unwrap_or(config.method),
-            margin: self.margin.unwrap_or(config.margin),
-            ..config
-        }
+        config.method = self.method.unwrap_or(config.method);
+        config.margin = self.margin.unwrap_or(config.margin);
+        config
     }
 
     /// The kind of the file, which fits the options.

@@ -1,6 +1,6 @@
 //! The docking task: footprint, start, goal and the obstacles of a map, a scan or a list.
 
-use crate::{AppError, read_map};
+use crate::{AppError, MapExtent, read_map};
 use std::path::Path;
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2};
 use trundle_docking::corridor::{Problem, Scenario, parse, write};
@@ -43,8 +43,10 @@ impl DockingTask {
         let off_map = [("start", start), ("goal", goal)]
             .into_iter()
             .find(|(_, pose)| grid.geometry().cell_at(pose.position()).is_none());
-        let refusal =
-            off_map.map(|(name, Pose2 { x, y, .. })| format!("the {name} ({x:.2}, {y:.2}) m is off the map"));
+        let map = MapExtent::of(grid.geometry());
+        let refusal = off_map.map(|(name, Pose2 { x, y, .. })| {
+            format!("the {name} ({x:.2}, {y:.2}) m is off the map, which has {map}")
+        });
         let (center, half) = config.view(&footprint, &start, &goal);
         let scene = ObstacleScene::from_grid(&grid, center, half, !unknown_is_free);
         let name = file.display().to_string();
@@ -54,7 +56,7 @@ impl DockingTask {
     /// A task among the obstacles of a list, with the list's footprint, start and goal.
     ///
     /// # Errors
-    /// When the obstacles cannot be accepted.
+    /// When the obstacles are invalid.
     pub fn of_problem(problem: Problem) -> Result<Self, Invalid> {
         Ok(Self {
             name: problem.name.clone(),

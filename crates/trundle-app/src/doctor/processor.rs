@@ -5,7 +5,7 @@ use super::system::System;
 
 /// Flags of the instructions that the kernels use, of x86-64 and of aarch64. Source: the kernels of vision, grid and mapping.
 const VECTOR_FLAGS: [&str; 2] = ["avx2", "asimd"];
-/// Number of cores from which control and the long work run on cores of their own. Source: `trundle_app::real_time`.
+/// Minimum number of cores at which the control thread has a core of its own. Source: `trundle_app::real_time`.
 const MIN_CORES: usize = 2;
 /// Available memory below which a run may not fit \[MB\]. Source: `docs/how-to/small-computer.md`, twice the robot's memory and a map's.
 const MIN_AVAILABLE_MB: u64 = 500;

@@ -26,7 +26,9 @@ impl MapEvaluation {
     /// When a map cannot be read, has no occupied cell, or `within` is not above 0.
     pub fn of(truth: &Path, map: &Path, at: Pose2, is_exact: bool, within: f64) -> Result<Self, AppError> {
         let [true_grid, grid] = read_two_maps([truth, map])?;
-        let config = MapAgreementConfig { within, ..MapAgreementConfig::default() }.validated()?;
+        let mut config = MapAgreementConfig::default();
+        config.within = within;
+        let config = config.validated()?;
         let wrong = |error: EvalError| named_error(&error, truth, map);
         let pose = if is_exact { at } else { align_maps(&true_grid, &grid, at).map_err(wrong)? };
         let agreement = map_agreement(&true_grid, &grid, pose, &config).map_err(wrong)?;

@@ -58,7 +58,9 @@ impl RelationEvaluation {
     ) -> Result<Self, AppError> {
         let relations = relation_sets(reference, form)?;
         let poses = unrounded_trajectory(estimate)?;
-        let config = RelationConfig { max_difference }.validated()?;
+        let mut config = RelationConfig::default();
+        config.max_difference = max_difference;
+        let config = config.validated()?;
         let wrong = |error: EvalError| named_error(&error, reference, estimate);
         let mut sets = Vec::new();
         for (name, relations) in relations.into_iter().filter(|(_, relations)| !relations.is_empty()) {

@@ -140,7 +140,8 @@ mod tests {
     }
 
     fn rmse(alignment: Alignment) -> f64 {
-        let config = AbsoluteConfig { alignment, ..AbsoluteConfig::default() };
+        let mut config = AbsoluteConfig::default();
+        config.alignment = alignment;
         let found =
             TrajectoryEvaluation::of(&helix(1.0, 0.0), &helix(0.5, 3.0), &config, &RelativeConfig::default());
         found.unwrap().absolute.statistics.rmse

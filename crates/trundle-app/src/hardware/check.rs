@@ -1,10 +1,10 @@
 //! The check of base and camera before the first drive: rates, delays, signs of the encoders, the floor in the images.
 
-use super::check_log::{CheckLog, ImageNote, mean, rate_and_gap};
+use super::check_log::{BaseLog, CameraLog, CheckLog, ImageNote, mean, rate_and_gap};
 use super::{Drivers, OpenCamera};
 use crate::calibrate::{CalibratedValue, Calibration, floor_values};
 use crate::{AppError, stop};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::Instant;
 use trundle_core::{PinholeCamera, Vector3};
 use trundle_drivers::BaseSpec;
@@ -19,9 +19,9 @@ const MIN_WHEELS_HZ: f64 = 25.0;
 const MIN_GYRO_HZ: f64 = 25.0;
 /// Smallest part of the pixels with depth. Source: ours.
 const MIN_DEPTH_PART: f64 = 0.1;
-/// Distance of both wheels from which a push shows the encoders' signs \[m\]. Source: ours.
+/// Smallest distance of both wheels at which a push shows the encoders' signs \[m\]. Source: ours.
 const MIN_PUSH_M: f64 = 0.1;
-/// Turn from which wheels and gyro are compared \[rad\]: 20 deg. Source: ours.
+/// Smallest turn at which wheels and gyro are compared \[rad\]: 20 deg. Source: ours.
 const MIN_TURN_RAD: f64 = 0.35;
 /// Smallest number of images that show the floor. Source: ours.
 const MIN_FLOOR_IMAGES: usize = 3;
@@ -70,9 +70,9 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
     let CheckRequest { base, camera, output, robot, seconds } = request;
     let (info, origin) = (camera.info().clone(), Instant::now());
     let expected_up = robot.mount.base_from_camera().inverse().rotate(Vector3::z());
-    let log = Arc::new(Mutex::new(CheckLog::new(origin, output, robot.drive, expected_up)));
+    let log = Arc::new(CheckLog::new(origin, output, robot.drive, expected_up));
     let sink = Arc::clone(&log);
-    let on_event = move |event| sink.lock().unwrap_or_else(PoisonError::into_inner).on_event(&event);
+    let on_event = move |event| sink.on_event(&event);
     let drivers = Drivers::start(base, camera, output, origin, on_event)?;
     // The probe of the base uses a part of the time since the origin.
     let start = Instant::now();
@@ -83,7 +83,7 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
     let (versions, (base_counters, camera_counters)) = (drivers.versions(), drivers.counters());
     let fault = drivers.camera_fault();
     drop(drivers);
-    let log = log.lock().unwrap_or_else(PoisonError::into_inner);
+    let (base_log, camera_log) = (log.base(), log.camera());
     let mut report = HardwareReport::default();
     let text = |version: Option<_>| {
         version.map_or("unknown".to_owned(), |v: trundle_drivers::kobuki::protocol::Version| v.to_string())
@@ -93,21 +93,21 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
         format!("{base}, hardware {}, firmware {}", text(versions.hardware), text(versions.firmware)),
     );
     report.problems.extend(versions.firmware_fault());
-    report.check_base(&log);
+    report.check_base(&base_log);
     report.row("bytes skipped, packets with a wrong checksum", {
         let decoder = base_counters.decoder;
         format!("{}, {}", decoder.skipped_bytes, decoder.wrong_checksum)
     });
     let size = format!("{} x {} px", info.color.camera.width(), info.color.camera.height());
     report.row("camera", format!("{}, {size}, {:.0} Hz", info.name, info.color.rate_hz));
-    report.check_camera(&log, info.color.rate_hz);
+    report.check_camera(&camera_log, info.color.rate_hz);
     report.row("images dropped, broken, stuck", {
         format!("{}, {}, {}", camera_counters.dropped, camera_counters.broken, camera_counters.stuck)
     });
     report.problems.extend(fault.map(|fault| format!("camera: {fault}")));
-    report.check_wheels(&log);
-    report.check_floor(&log, robot);
-    report.notes.extend(log.body.events.iter().map(|event| format!("event at {event}")));
+    report.check_wheels(&base_log);
+    report.check_floor(&camera_log, robot);
+    report.notes.extend(base_log.body.events.iter().map(|event| format!("event at {event}")));
     report.values.values.extend(intrinsics(&info.color.camera, &robot.camera));
     Ok(report)
 }
@@ -117,7 +117,7 @@ impl HardwareReport {
         self.rows.push(vec![name.to_owned(), value]);
     }
 
-    fn check_base(&mut self, log: &CheckLog) {
+    fn check_base(&mut self, log: &BaseLog) {
         match rate_and_gap(&log.wheels) {
             Some((rate, gap)) => {
                 self.row("wheels: rate, longest gap", format!("{rate:.1} Hz, {gap:.0} ms"));
@@ -150,7 +150,7 @@ impl HardwareReport {
         }
     }
 
-    fn check_camera(&mut self, log: &CheckLog, nominal_hz: f64) {
+    fn check_camera(&mut self, log: &CameraLog, nominal_hz: f64) {
         let column = |value: fn(&ImageNote) -> f64| log.images.iter().map(value).collect::<Vec<f64>>();
         let Some((rate, gap)) = rate_and_gap(&column(|image| image.arrival_s)) else {
             let remedy = "check its cable, its USB port and what else uses it";
@@ -174,7 +174,7 @@ impl HardwareReport {
     }
 
     /// The signs of encoders and gyro, if the robot was pushed.
-    fn check_wheels(&mut self, log: &CheckLog) {
+    fn check_wheels(&mut self, log: &BaseLog) {
         let [left, right] = log.distances;
         let (turn, gyro) = ((right - left) / log.wheelbase(), log.gyro_turn);
         self.row("pushed: left wheel, right wheel", format!("{left:.3} m, {right:.3} m"));
@@ -205,7 +205,7 @@ impl HardwareReport {
         }
     }
 
-    fn check_floor(&mut self, log: &CheckLog, robot: &RobotConfig) {
+    fn check_floor(&mut self, log: &CameraLog, robot: &RobotConfig) {
         let Some(floor) =
             FloorMount::of(&log.floor.views(), None).filter(|floor| floor.images >= MIN_FLOOR_IMAGES)
         else {

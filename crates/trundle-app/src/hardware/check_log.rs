@@ -1,5 +1,6 @@
 //! Readings from base and camera during a check.
 
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use trundle_core::{
     Battery, BodyEventKind, DifferentialDrive, GyroRate, PerWheel, PinholeCamera, RgbdImage, SensorEvent,
@@ -29,17 +30,30 @@ pub(super) struct BodyNotes {
     pub events: Vec<String>,
 }
 
-/// Readings from base and camera during a check.
+/// Readings from base and camera during a check. Each device's thread has its own part: the search of the floor in an image delays no reading
+/// of the base.
 #[derive(Debug)]
 pub(super) struct CheckLog {
     origin: Instant,
+    base: Mutex<BaseLog>,
+    camera: Mutex<CameraLog>,
+}
+
+/// Images of the camera during a check.
+#[derive(Debug)]
+pub(super) struct CameraLog {
     camera: PinholeCamera,
+    pub images: Vec<ImageNote>,
+    pub floor: FloorSearch,
+}
+
+/// Readings from the base, and events of all devices, during a check.
+#[derive(Debug)]
+pub(super) struct BaseLog {
     drive: DifferentialDrive,
     /// Arrivals of readings \[s\].
     pub wheels: Vec<f64>,
     pub gyro: Vec<f64>,
-    pub images: Vec<ImageNote>,
-    pub floor: FloorSearch,
     /// Distance of the left and the right wheel \[m\].
     pub distances: [f64; 2],
     /// Turn by the gyro \[rad\].
@@ -59,14 +73,39 @@ impl CheckLog {
         drive: DifferentialDrive,
         expected_up: Vector3,
     ) -> Self {
+        let floor = FloorSearch::new(expected_up);
         Self {
             origin,
-            camera,
+            base: Mutex::new(BaseLog::new(drive)),
+            camera: Mutex::new(CameraLog { camera, images: Vec::new(), floor }),
+        }
+    }
+
+    pub fn on_event(&self, event: &SensorEvent) {
+        let now = self.origin.elapsed().as_secs_f64();
+        match event {
+            SensorEvent::Rgbd(image) => self.camera().on_image(now, image),
+            event => self.base().on_event(now, event),
+        }
+    }
+
+    /// The readings from the base.
+    pub fn base(&self) -> MutexGuard<'_, BaseLog> {
+        self.base.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The images of the camera.
+    pub fn camera(&self) -> MutexGuard<'_, CameraLog> {
+        self.camera.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl BaseLog {
+    fn new(drive: DifferentialDrive) -> Self {
+        Self {
             drive,
             wheels: Vec::new(),
             gyro: Vec::new(),
-            images: Vec::new(),
-            floor: FloorSearch::new(expected_up),
             distances: [0.0; 2],
             gyro_turn: 0.0,
             rest_rates: Vec::new(),
@@ -82,12 +121,10 @@ impl CheckLog {
         self.drive.wheelbase
     }
 
-    pub fn on_event(&mut self, event: &SensorEvent) {
-        let now = self.origin.elapsed().as_secs_f64();
+    fn on_event(&mut self, now: f64, event: &SensorEvent) {
         match event {
             SensorEvent::Wheels(ticks) => self.on_wheels(now, ticks),
             SensorEvent::Gyro(rate) => self.on_gyro(now, rate),
-            SensorEvent::Rgbd(image) => self.on_image(now, image),
             SensorEvent::Body(event) => self.on_body(now, event.kind),
             SensorEvent::Touch(touch) if touch.pressed => {
                 self.body.events.push(format!("{now:.1} s: bumper pressed"))
@@ -136,7 +173,9 @@ impl CheckLog {
             self.gyro_turn += (rate.omega - mean(&self.rest_rates)) * dt;
         }
     }
+}
 
+impl CameraLog {
     fn on_image(&mut self, now: f64, image: &RgbdImage) {
         let depth = image.depth();
         let known = depth.data().iter().filter(|depth| **depth > 0.0).count();

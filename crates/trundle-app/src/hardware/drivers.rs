@@ -1,6 +1,7 @@
 //! The drivers of base and camera, in their own threads.
 
 use crate::{AppError, stop};
+use nalgebra::UnitQuaternion;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -13,6 +14,7 @@ use trundle_drivers::camera::{CameraError, CameraInfo, DepthCamera};
 use trundle_drivers::clock::{DeviceClock, DeviceClockConfig, HostClock};
 use trundle_drivers::kobuki::{BaseCounters, KobukiBase, KobukiBaseConfig, Versions};
 use trundle_drivers::{BaseSpec, CameraSpec};
+use trundle_runtime::CameraMount;
 
 /// Longest wait for a camera to open: a stream's writer may start after us. Source: ours.
 const CAMERA_TIMEOUT: Duration = Duration::from_secs(10);
@@ -23,10 +25,46 @@ const PROGRAM_NAME: &str = "trundle";
 /// Longest wait for a lost camera to open again: in between, the driver's threads check for the end of the run. Source: ours.
 const REOPEN_TIMEOUT: Duration = Duration::from_secs(1);
 
+/// Source of the colour camera's intrinsics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IntrinsicsSource {
+    /// The camera's own.
+    Device,
+    /// The table `[camera]` of the robot file.
+    Robot,
+}
+
+impl IntrinsicsSource {
+    /// The choices of a front end: name, help text, value.
+    pub const CHOICES: [(&'static str, &'static str, Self); 2] = [
+        ("device", "The camera's own; its readout time is that of the robot file", Self::Device),
+        ("robot", "The table [camera] of the robot file", Self::Robot),
+    ];
+}
+
+/// Source of the robot's gyro.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GyroOrigin {
+    /// The base: its gyro is at the axle, and its readings come in the packets of the wheels.
+    Base,
+    /// A RealSense camera with a gyro, for a base whose gyro is absent or broken.
+    Camera,
+}
+
+impl GyroOrigin {
+    /// The choices of a front end: name, help text, value.
+    pub const CHOICES: [(&'static str, &'static str, Self); 2] = [
+        ("base", "The base's own, in the packets of the wheels", Self::Base),
+        ("camera", "That of a RealSense D435i or D455, for a base whose gyro is broken", Self::Camera),
+    ];
+}
+
 /// A camera that is open, and how to open it again.
 pub struct OpenCamera {
     spec: CameraSpec,
     camera: Box<dyn DepthCamera>,
+    /// Rotation of the colour camera on the base, if the camera's gyro is read instead of the base's.
+    gyro: Option<UnitQuaternion<f64>>,
 }
 
 impl OpenCamera {
@@ -35,9 +73,24 @@ impl OpenCamera {
     /// # Errors
     /// When the camera does not exist or cannot be used, or the user interrupted.
     pub fn open(spec: &CameraSpec) -> Result<Self, AppError> {
+        Self::open_by(spec, None)
+    }
+
+    /// Opens the camera, with its gyro if `gyro` says so; `mount` is that of the colour camera on the base.
+    ///
+    /// # Errors
+    /// As [`OpenCamera::open`], and when the gyro is asked for and the camera has none that is read.
+    pub fn open_with(spec: &CameraSpec, gyro: GyroOrigin, mount: &CameraMount) -> Result<Self, AppError> {
+        match gyro {
+            GyroOrigin::Base => Self::open(spec),
+            GyroOrigin::Camera => Self::open_by(spec, Some(mount.base_from_camera().rotation)),
+        }
+    }
+
+    fn open_by(spec: &CameraSpec, gyro: Option<UnitQuaternion<f64>>) -> Result<Self, AppError> {
         let (sender, opened) = channel();
         let asked = spec.clone();
-        let open = move || _ = sender.send(asked.open(CAMERA_TIMEOUT, &helper_program()));
+        let open = move || _ = sender.send(open_camera(&asked, gyro.is_some(), CAMERA_TIMEOUT));
         std::thread::Builder::new()
             .name("open-camera".to_owned())
             .spawn(open)
@@ -54,7 +107,7 @@ impl OpenCamera {
                 }
             }
         };
-        Ok(Self { spec: spec.clone(), camera })
+        Ok(Self { spec: spec.clone(), camera, gyro })
     }
 
     /// Refuses a recorded camera: a base must not drive by old images.
@@ -72,23 +125,41 @@ impl OpenCamera {
         )))
     }
 
-    /// The intrinsics that the robot works with: those given, else the camera's own.
+    /// The intrinsics that the robot works with.
     ///
     /// # Errors
-    /// When those given are of another image size.
-    pub fn intrinsics(&self, given: Option<&PinholeCamera>) -> Result<PinholeCamera, AppError> {
-        let own = self.info().color.camera;
-        let size = |camera: &PinholeCamera| format!("{} x {} px", camera.width(), camera.height());
-        match given {
-            None => Ok(own),
-            Some(given) if size(given) == size(&own) => Ok(*given),
-            Some(given) => Err(AppError::Input(format!(
-                "camera of the robot file is {}, expected {} as {} delivers",
-                size(given),
-                size(&own),
-                self.spec
-            ))),
+    /// When those of the robot file are of another image size than the camera's, or its readout time is not valid.
+    pub fn intrinsics(
+        &self,
+        source: IntrinsicsSource,
+        robot_file: &PinholeCamera,
+    ) -> Result<PinholeCamera, AppError> {
+        match source {
+            IntrinsicsSource::Device => self.own_intrinsics(robot_file),
+            IntrinsicsSource::Robot => self.checked_intrinsics(robot_file),
         }
+    }
+
+    /// The camera's own intrinsics. Cameras do not report the readout time of their rolling shutter: without it, that of the robot file.
+    fn own_intrinsics(&self, robot_file: &PinholeCamera) -> Result<PinholeCamera, AppError> {
+        let own = self.info().color.camera;
+        if own.readout() > 0.0 {
+            return Ok(own);
+        }
+        own.with_readout(robot_file.readout()).map_err(AppError::input)
+    }
+
+    /// The intrinsics of the robot file, which must have the camera's image size.
+    fn checked_intrinsics(&self, robot_file: &PinholeCamera) -> Result<PinholeCamera, AppError> {
+        let size = |camera: &PinholeCamera| format!("{} x {} px", camera.width(), camera.height());
+        let (given, own) = (size(robot_file), size(&self.info().color.camera));
+        if given == own {
+            return Ok(*robot_file);
+        }
+        Err(AppError::Input(format!(
+            "camera of the robot file is {given}, expected {own} as {} delivers",
+            self.spec
+        )))
     }
 
     /// The camera's own description.
@@ -96,6 +167,14 @@ impl OpenCamera {
     pub fn info(&self) -> &CameraInfo {
         self.camera.info()
     }
+}
+
+fn open_camera(
+    spec: &CameraSpec,
+    with_gyro: bool,
+    timeout: Duration,
+) -> Result<Box<dyn DepthCamera>, CameraError> {
+    if with_gyro { spec.open_with_gyro() } else { spec.open(timeout, &helper_program()) }
 }
 
 /// Path of the program `trundle`, for its helper commands `serve-camera` and `guard-base`: the present program if it is `trundle`, else the
@@ -129,18 +208,18 @@ impl Drivers {
         send: impl Fn(SensorEvent) + Clone + Send + 'static,
     ) -> Result<Self, AppError> {
         let clock: HostClock = Arc::new(move || Stamp::default().after(origin.elapsed().as_secs_f64()));
+        let OpenCamera { spec, camera, gyro } = camera;
         let config = KobukiBaseConfig::default();
-        let base = KobukiBase::start(
-            base.connector(&helper_program()),
-            config,
-            Arc::clone(&clock),
-            Box::new(send.clone()),
-        )
-        .map_err(AppError::input)?;
-        let config = CameraThreadConfig { output: Some(output), ..CameraThreadConfig::default() };
-        let OpenCamera { spec, camera } = camera;
+        let sink = base_sink(send.clone(), gyro.is_none());
+        let base =
+            KobukiBase::start(base.connector(&helper_program()), config, Arc::clone(&clock), Box::new(sink))
+                .map_err(AppError::input)?;
+        let mut config = CameraThreadConfig::default();
+        config.output = Some(output);
+        config.gyro = gyro;
         let mut first = Some(camera);
-        let factory = move || first.take().map_or_else(|| spec.open(REOPEN_TIMEOUT, &helper_program()), Ok);
+        let reopen = move || open_camera(&spec, gyro.is_some(), REOPEN_TIMEOUT);
+        let factory = move || first.take().map_or_else(&reopen, Ok);
         let parts = CameraThreadParts {
             factory: Box::new(factory),
             sink: Box::new(send),
@@ -177,11 +256,89 @@ impl Drivers {
     }
 }
 
+/// The events of the base, with or without those of its gyro.
+fn base_sink(send: impl Fn(SensorEvent), with_gyro: bool) -> impl Fn(SensorEvent) {
+    move |event| {
+        if with_gyro || !matches!(event, SensorEvent::Gyro(_)) {
+            send(event);
+        }
+    }
+}
+
 /// A filter that maps the camera's clock to the host's, reset at each opening.
 fn stamp_maps() -> StampMapFactory {
     Box::new(|info| {
-        let config = DeviceClockConfig { transport_delay_s: info.delay_s, ..DeviceClockConfig::default() };
+        let mut config = DeviceClockConfig::default();
+        config.transport_delay_s = info.delay_s;
         let mut clock = DeviceClock::new(config);
         Box::new(move |device, arrival| clock.to_host(device.nanos, arrival))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    /// A folder camera of 640 x 480 px whose colour camera has this readout time \[s\].
+    fn camera(folder: &std::path::Path, readout: f64) -> OpenCamera {
+        let stream = |format: &str| {
+            format!(
+                "{{\"format\":\"{format}\",\"camera\":{{\"width\":640,\"height\":480,\"fx\":500.0,\"fy\":500.0,\"cx\":320.0,\"cy\":240.0,\
+                 \"readout\":{readout}}},\"rate_hz\":30}}"
+            )
+        };
+        let (color, depth) = (stream("mjpg"), stream("depth16"));
+        let header = format!(
+            "{{\"magic\":\"trundle-camera\",\"version\":1,\"name\":\"test\",\"color\":{color},\"depth\":{depth},\"live\":false}}\n"
+        );
+        fs::write(folder.join("camera.json"), header).unwrap();
+        fs::create_dir_all(folder.join("color")).unwrap();
+        fs::create_dir_all(folder.join("depth")).unwrap();
+        OpenCamera::open(&format!("folder:{}", folder.display()).parse().unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_camera_without_a_readout_time_gets_that_of_the_robot_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let robot = PinholeCamera::kinect_v2().with_readout(0.02).unwrap();
+        let own = camera(folder.path(), 0.0).own_intrinsics(&robot).unwrap();
+        assert_eq!((own.fx(), own.readout()), (500.0, 0.02));
+        let own = camera(folder.path(), 0.01).own_intrinsics(&robot).unwrap();
+        assert_eq!((own.fx(), own.readout()), (500.0, 0.01));
+    }
+
+    #[test]
+    fn with_the_gyro_of_the_camera_that_of_the_base_is_left_out() {
+        use trundle_core::{GyroRate, WheelTicks};
+        let stamp = Stamp::default();
+        for (with_gyro, expected) in [(true, 2), (false, 1)] {
+            let count = std::cell::Cell::new(0);
+            let sink = base_sink(|_| count.set(count.get() + 1), with_gyro);
+            sink(SensorEvent::Gyro(GyroRate { stamp, omega: 0.1 }));
+            sink(SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }));
+            assert_eq!(count.get(), expected);
+        }
+    }
+
+    #[test]
+    fn a_camera_without_a_gyro_is_refused() {
+        let camera = "folder:x".parse().unwrap();
+        let refused = OpenCamera::open_with(&camera, GyroOrigin::Camera, &CameraMount::default());
+        let refused = refused.err().unwrap().to_string();
+        assert!(refused.contains("does not offer a gyro: use realsense"), "{refused}");
+    }
+
+    #[test]
+    fn intrinsics_of_another_size_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let camera = camera(folder.path(), 0.0);
+        let refused = camera.checked_intrinsics(&PinholeCamera::kinect_v2()).unwrap_err().to_string();
+        assert!(
+            refused.contains("camera of the robot file is 512 x 424 px, expected 640 x 480 px"),
+            "{refused}"
+        );
+        let own = camera.info().color.camera;
+        assert_eq!(camera.checked_intrinsics(&own).unwrap(), own);
+    }
 }

@@ -6,6 +6,8 @@ use trundle_mapping::{Localized, MappingPause, Processed, ScanUpdate};
 /// Numbers of scans of a log, by the filter's result.
 #[derive(Debug, Default)]
 pub struct ScanCounts {
+    /// Scans that the filter received: all of a log that was read to its end.
+    pub read: usize,
     /// Scans inserted into the map or localized in it.
     pub processed: usize,
     /// Scans refused.
@@ -18,7 +20,7 @@ pub struct ScanCounts {
     pub resamplings: usize,
     /// Scans without overlap with the map.
     pub without_overlap: usize,
-    /// Scans with a direction left to the odometry.
+    /// Scans with a degenerate direction: the pose along it is that of the odometry.
     pub degenerate: usize,
     /// Loop closures that corrected the trajectory.
     pub corrections: usize,
@@ -37,6 +39,7 @@ pub struct ScanCounts {
 impl ScanCounts {
     /// Counts a scan in a map that grows.
     pub fn count(&mut self, update: &ScanUpdate) {
+        self.read += 1;
         match update {
             ScanUpdate::Processed(done) => self.count_processed(done),
             ScanUpdate::Refused(_) => self.refused += 1,
@@ -55,6 +58,7 @@ impl ScanCounts {
 
     /// Counts a scan in a map that does not change.
     pub fn count_localized(&mut self, localized: &Localized) {
+        self.read += 1;
         match localized {
             Localized::Known { degenerate, .. } => {
                 self.processed += 1;

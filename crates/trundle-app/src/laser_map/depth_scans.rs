@@ -1,6 +1,7 @@
 //! Depth images as scans, with the base's poses beside them.
 
 use super::log_input::{DepthLog, LogInput};
+use crate::pose_coverage::why_uncovered;
 use crate::sequence_input::{PendingFrame, RecordedRun, SequenceInput};
 use crate::{AppError, StepProgress, read_trajectory, stop};
 use std::path::Path;
@@ -20,25 +21,30 @@ const MAX_POSE_DISTANCE_M: f64 = 1e6;
 
 /// The scans of RGB-D images at 5 Hz.
 ///
-/// The motion is `tracked`, a TUM trajectory of the camera, or the input's odometry, both with the camera mounted as on the input's
+/// The motion is `tracked_file`, a TUM trajectory of the camera, or the input's odometry, both with the camera mounted as on the input's
 /// robot. Else it is the input's ground truth, whose frame must be level with the floor at z = 0. Each image is then cut under the tilt
 /// and height of its pose.
 pub fn read(
     input: &SequenceInput,
-    tracked: Option<&Path>,
+    tracked_file: Option<&Path>,
     progress: &dyn StepProgress,
 ) -> Result<LogInput, AppError> {
     let robot = &input.robot;
     let mut scanner =
         DepthScanner::new(input.camera.model.camera, robot.mount.base_from_camera(), robot.scan.clone())?;
-    let tracked = tracked.map(|file| base_poses(file, robot)).transpose()?;
+    let tracked = tracked_file.map(|file| base_poses(file, robot)).transpose()?;
     let poses = match &tracked {
         Some(poses) => Poses::Base(poses),
         None => Poses::of(input)?,
     };
     let (mut log, mut last) = (LaserLog::default(), None);
+    let (mut images, mut is_covered): (Option<(Stamp, Stamp)>, bool) = (None, false);
     let mut depth = DepthStatistics::default();
     log.max_range = Some(robot.scan.max_range);
+    log.sources = input.laser_sources();
+    if tracked.is_some() {
+        log.sources.odometry.clear();
+    }
     progress.begin(Some(input.len()));
     for (i, frame) in input.frames()?.enumerate() {
         if stop::is_requested(|| format!("{i} of {} images", input.len())) {
@@ -47,6 +53,8 @@ pub fn read(
         progress.advance();
         let frame = frame?;
         let stamp = frame.stamp();
+        images = Some((images.map_or(stamp, |(first, _)| first), stamp));
+        is_covered |= poses.covers(stamp);
         if last.is_some_and(|last| stamp - last < MIN_SCAN_PERIOD_S) {
             continue;
         }
@@ -66,7 +74,13 @@ pub fn read(
     }
     match log.skipped.first() {
         Some(first) if log.scans.is_empty() => {
-            Err(AppError::Input(format!("{}: no frame can be used; {}", input.path.display(), first.problem)))
+            let cause = images.filter(|_| !is_covered).map(|images| {
+                let file = tracked_file.map(|file| file.display().to_string());
+                let name = file.unwrap_or_else(|| poses.name(input).to_owned());
+                format!("{name}: no pose for any image: {}", poses.why_uncovered(images))
+            });
+            let problem = cause.unwrap_or_else(|| first.problem.clone());
+            Err(AppError::Input(format!("{}: no frame can be used; {problem}", input.path.display())))
         }
         _ => {
             let by_wheels = tracked.is_none() && input.odometry().is_some();
@@ -105,7 +119,7 @@ pub fn of_laser(run: &RecordedRun, file: &Path) -> Result<LogInput, AppError> {
     let mut log = LaserLog { odometry: odometry.to_vec(), ..LaserLog::default() };
     for (i, scan) in run.scans().iter().enumerate() {
         let stamp = scan.stamp();
-        match about(odometry, stamp) {
+        match neighbours(odometry, stamp) {
             Some((a, b, part)) => {
                 let odom_from_base = a.interpolate(&b, part);
                 log.scans.push(LaserLogScan { odom_from_base, scan: scan.clone() });
@@ -144,15 +158,40 @@ impl<'a> Poses<'a> {
         }
     }
 
+    /// The source's name in messages.
+    fn name(&self, input: &SequenceInput) -> &'static str {
+        let [odometry, truth] = input.pose_sources();
+        match self {
+            Self::Base(_) => odometry,
+            Self::Camera(_) => truth,
+        }
+    }
+
+    /// Whether there is a pose at a time.
+    fn covers(&self, stamp: Stamp) -> bool {
+        match self {
+            Self::Base(poses) => neighbours(poses, stamp).is_some(),
+            Self::Camera(poses) => neighbours(poses, stamp).is_some(),
+        }
+    }
+
+    /// The reason why no image has a pose.
+    fn why_uncovered(&self, images: (Stamp, Stamp)) -> String {
+        match self {
+            Self::Base(poses) => why_uncovered(poses, images, MAX_POSE_GAP_S),
+            Self::Camera(poses) => why_uncovered(poses, images, MAX_POSE_GAP_S),
+        }
+    }
+
     /// The base at a time, and the camera's mount where it changes.
     fn at(&self, stamp: Stamp) -> Option<(Pose2, Option<Pose3>)> {
         match self {
             Self::Base(poses) => {
-                let (a, b, part) = about(poses, stamp)?;
+                let (a, b, part) = neighbours(poses, stamp)?;
                 Some((a.interpolate(&b, part), None))
             }
             Self::Camera(poses) => {
-                let (a, b, part) = about(poses, stamp)?;
+                let (a, b, part) = neighbours(poses, stamp)?;
                 let camera = a.interpolate(&b, part);
                 let base = base_below(&camera)?;
                 Some((base, Some(Pose3::from_pose2(base).inverse() * camera)))
@@ -181,7 +220,7 @@ fn base_poses(file: &Path, robot: &RobotConfig) -> Result<Vec<(Stamp, Pose2)>, A
 }
 
 /// The poses before and after a time, and its share of the time between them.
-pub(super) fn about<T: Copy>(poses: &[(Stamp, T)], stamp: Stamp) -> Option<(T, T, f64)> {
+pub(super) fn neighbours<T: Copy>(poses: &[(Stamp, T)], stamp: Stamp) -> Option<(T, T, f64)> {
     let after = poses.partition_point(|(at, _)| *at <= stamp);
     let (t0, a) = *poses.get(after.checked_sub(1)?)?;
     match poses.get(after) {

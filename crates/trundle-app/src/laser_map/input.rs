@@ -1,6 +1,6 @@
 //! The scans of a CARMEN log, a bag, a recording of trundle, or an RGB-D folder whose depth images become scans.
 
-use super::depth_scans::{self, about};
+use super::depth_scans::{self, neighbours};
 use super::log_input::LogInput;
 use super::request::LaserMapRequest;
 use crate::sequence_input::{RecordedRun, SequenceInput, SequenceOptions};
@@ -11,13 +11,13 @@ use trundle_io::{FileKind, LaserLog, read_laser_log};
 /// Reads the log. Its scans are deskewed if the log allows it and the request asks for it.
 ///
 /// # Errors
-/// Names the file, and the line or frame that cannot be accepted.
+/// Names the file and the invalid line or frame.
 pub fn read_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Result<LogInput, AppError> {
     let mut input = read_raw_log(request, progress)?;
     if request.deskew {
         let LaserLog { scans, odometry, .. } = &mut input.log;
         for entry in scans.iter_mut().filter(|entry| entry.scan.beam_times().is_some()) {
-            let pose = |stamp| about(odometry, stamp).map(|(a, b, part)| a.interpolate(&b, part));
+            let pose = |stamp| neighbours(odometry, stamp).map(|(a, b, part)| a.interpolate(&b, part));
             entry.scan = deskewed(entry.scan.clone(), pose);
         }
     }
@@ -40,7 +40,7 @@ fn read_raw_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Resul
             }
             SequenceInput::of_recording(&options, run)?
         }
-        kind if kind.is_bag() && SequenceInput::is_one(&request.log, &request.topics) => {
+        kind if kind.is_bag() && SequenceInput::is_sequence(&request.log, &request.topics) => {
             SequenceInput::open(&options)?
         }
         _ => {

@@ -15,21 +15,21 @@ const MAX_POINTS: usize = 180;
 const MIN_STEP_TURN_RAD: f64 = 0.15;
 /// Largest turn of a step \[rad\]. Two scans farther apart share too little. Source: ours.
 const MAX_STEP_TURN_RAD: f64 = 0.8;
-/// Minimum length of a step that reveals a turned laser \[m\]. Source: ours.
-const MIN_STEP_LENGTH_M: f64 = 0.2;
+/// Minimum length of a step that reveals a turned laser \[m\]: at a turn of 10 degrees it displaces the scan by 9 cm. Source: ours.
+const MIN_STEP_LENGTH_M: f64 = 0.5;
 /// Largest length of a step \[m\]. Two scans farther apart share too little. Source: ours.
 const MAX_STEP_LENGTH_M: f64 = 1.0;
 /// Number of scans after the first among which a step ends. Source: ours.
 const MAX_STEP_SCANS: usize = 40;
-/// Distance from which a point has no match \[m\]. Source: ours.
+/// Smallest distance at which a point has no match \[m\]. Source: ours.
 const MAX_MATCH_DISTANCE_M: f64 = 0.3;
 /// Largest distance of the ends of neighbouring beams on one surface \[m\]: beams of 5 degrees on a wall at 3 m, 60 degrees aslant. Source:
 /// ours.
 const MAX_SURFACE_LENGTH_M: f64 = 0.5;
 /// Share of the points that are compared, the nearest ones \[1\]. Source: ours, a third of a scan may be hidden from the earlier place.
 const COUNTED_SHARE: f64 = 0.7;
-/// Smallest difference of the errors of two mounts that is no noise \[m\]. Source: ours, twice the noise of a laser.
-const MIN_ERROR_GAIN_M: f64 = 0.02;
+/// Smallest difference of the errors of two mounts that is no noise \[m\]. Source: the noise of a range of a Hokuyo UTM-30LX below 10 m.
+const MIN_ERROR_GAIN_M: f64 = 0.01;
 /// Difference of two turns of a laser below which they are equal \[rad\]: half a degree, since messages give whole degrees. Source: ours.
 const MIN_TURN_DIFFERENCE_RAD: f64 = 0.0087;
 /// Difference of the turns of a laser that are tried first \[rad\]: 15 degrees, so that one of them is within 8 degrees of the true turn.
@@ -99,7 +99,7 @@ pub(super) fn better_mount(log: &LaserLog) -> Option<LaserMount> {
         return None;
     }
     let taken = mean_error(&steps, Reading { is_mirrored: false, turn: 0.0 })?;
-    let (quarter_error, quarter) = best_reading(&steps, readings_every(FRAC_PI_2))?;
+    let (quarter_error, quarter) = best_reading(&steps, mounts_by_quarters(log.mount))?;
     let (turned_error, turned) = best_turn(&steps)?;
     // Most lasers are mounted by quarters of a turn, and beams far apart blur the error: another angle has to fit better than these.
     let is_turned = is_better(turned_error, quarter_error, MAX_TURNED_SHARE);
@@ -122,6 +122,14 @@ fn best_reading(steps: &[Step<'_>], readings: impl IntoIterator<Item = Reading>)
 fn readings_every(step: f64) -> impl Iterator<Item = Reading> {
     let turns = (0..).map(move |k| f64::from(k) * step).take_while(move |turn| *turn < TAU - step / 2.0);
     turns.flat_map(|turn| [false, true].map(|is_mirrored| Reading { is_mirrored, turn }))
+}
+
+/// The readings of a log with this mount whose mounts are turned by quarters.
+fn mounts_by_quarters(mount: LaserMount) -> impl Iterator<Item = Reading> {
+    readings_every(FRAC_PI_2).map(move |reading| {
+        let turn = if reading.is_mirrored { reading.turn + mount.turn } else { reading.turn - mount.turn };
+        Reading { turn, ..reading }
+    })
 }
 
 /// The best reading at any angle: a search at coarse steps, then at half the step around the best angle, down to half a degree.
@@ -291,7 +299,9 @@ mod tests {
 
     #[test]
     fn lasers_turned_by_any_angle_are_named() {
-        for (degrees, upside_down) in [(45.0_f64, false), (-135.0, false), (30.0, true), (67.0, false)] {
+        let turns =
+            [(45.0_f64, false), (-135.0, false), (30.0, true), (67.0, false), (10.0, false), (-10.0, true)];
+        for (degrees, upside_down) in turns {
             let truth = LaserMount { turn: degrees.to_radians(), upside_down };
             let found = better_mount(&drive(truth)).unwrap();
             assert_eq!(found.upside_down, upside_down, "{truth:?}: {found:?}");
@@ -302,14 +312,14 @@ mod tests {
 
     #[test]
     fn beams_far_apart_hide_no_turn() {
-        for step_deg in [5.0_f64, 8.0] {
+        for step_deg in [1.0_f64, 2.5, 5.0, 8.0] {
             let beams = (230.0 / step_deg) as i32;
             let log = |degrees: f64| {
                 let truth = LaserMount { turn: degrees.to_radians(), upside_down: false };
                 drive_with(truth, beams, step_deg.to_radians())
             };
             assert_eq!(better_mount(&log(0.0)), None, "{step_deg}");
-            for degrees in [20.0_f64, 30.0, -30.0, 45.0, 120.0] {
+            for degrees in [10.0_f64, -10.0, 20.0, 30.0, -30.0, 45.0, 120.0] {
                 let found = better_mount(&log(degrees)).unwrap();
                 let error = wrap_angle(found.turn - degrees.to_radians()).abs();
                 assert!(
@@ -353,6 +363,17 @@ mod tests {
         assert!(ahead.ends_with("mounted straight ahead: try --laser-turn=0"), "{ahead}");
         let turned = described(mount(90.0, true), mount(0.0, true)).unwrap();
         assert!(turned.ends_with("mounted turned by 90 deg: try --laser-turn=90"), "{turned}");
+    }
+
+    #[test]
+    fn the_mount_of_a_log_is_suggested_by_quarters_whatever_was_given() {
+        for (given, upside_down) in [(0.35, false), (-0.6, true)] {
+            let given = LaserMount { turn: given, upside_down };
+            for reading in mounts_by_quarters(given) {
+                let quarters = reading.applied_to(given).turn / FRAC_PI_2;
+                assert!((quarters - quarters.round()).abs() < 1e-12, "{given:?}: {reading:?}");
+            }
+        }
     }
 
     #[test]

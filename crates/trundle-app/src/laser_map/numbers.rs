@@ -45,14 +45,15 @@ pub fn map_rows(log: &LaserLog, run: &LaserMapRun) -> Vec<Vec<String>> {
     let mut rows = source_rows(&log.sources);
     rows.extend([
         row("scans", log.scans.len().to_string()),
+        row("scans read", counts.read.to_string()),
         row("scans without a return", log.scans_without_return().to_string()),
-        row("ranges that cannot be", log.bad_ranges.to_string()),
+        row("invalid ranges", log.bad_ranges.to_string()),
         row("processed", counts.processed.to_string()),
         row("odometry jumps", counts.jumps.to_string()),
         row("odometry steps rejected", counts.slips.to_string()),
         row("scans without overlap with the map", counts.without_overlap.to_string()),
-        row("scans with a direction left to the odometry", counts.degenerate.to_string()),
-        row("scans while the pose was not known", counts.lost.to_string()),
+        row("scans with a degenerate direction", counts.degenerate.to_string()),
+        row("scans at an unknown pose", counts.lost.to_string()),
         row("pauses where scans contradict the given map", counts.pauses.to_string()),
         row("scans left out by pauses", counts.left_out.to_string()),
         row("resamplings", counts.resamplings.to_string()),
@@ -63,7 +64,7 @@ pub fn map_rows(log: &LaserLog, run: &LaserMapRun) -> Vec<Vec<String>> {
     rows
 }
 
-/// The topics that made the log, and the unused ones. No rows if the log has no topics.
+/// The topics of the scans and of the odometry, and the unused topics. No rows if the log has no topics.
 fn source_rows(sources: &LaserLogSources) -> Vec<Vec<String>> {
     let left: Vec<String> = sources.left.iter().map(|(topic, count)| format!("{topic} ({count})")).collect();
     let rows = [
@@ -73,6 +74,11 @@ fn source_rows(sources: &LaserLogSources) -> Vec<Vec<String>> {
     ];
     let rows = rows.into_iter().filter(|(_, value)| !value.is_empty());
     rows.map(|(name, value)| vec![name.to_owned(), value]).collect()
+}
+
+/// The name of a topic; `None` without one.
+fn topic(name: &str) -> Option<&str> {
+    Some(name).filter(|name| !name.is_empty())
 }
 
 /// `summary.json`.
@@ -87,10 +93,11 @@ pub fn summary(request: &LaserMapRequest, input: &LogInput, run: &LaserMapRun) -
         .set("cut", input.cut_report.clone())
         .set("particles", request.particles)
         .set("seed", request.seed)
-        .set("scan_topic", log.sources.scans.clone())
-        .set("odometry_topic", log.sources.odometry.clone())
+        .set("scan_topic", topic(&log.sources.scans))
+        .set("odometry_topic", topic(&log.sources.odometry))
         .set("topics_left", serde_json::json!(log.sources.left.iter().cloned().collect::<BTreeMap<_, _>>()))
         .set("scans", log.scans.len())
+        .set("scans_read", counts.read)
         .set("scans_without_return", log.scans_without_return())
         .set("processed", counts.processed)
         .set("refused_scans", counts.refused)

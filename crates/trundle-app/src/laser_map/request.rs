@@ -4,9 +4,7 @@ use super::log_input::DepthLog;
 use crate::{AppError, read_map};
 use std::path::{Path, PathBuf};
 use trundle_io::{Expected, FileKind, LaserLogOptions, MapImage, RosSequenceOptions};
-use trundle_mapping::{
-    MapLocalizer, MapperConfig, MotionConfig, ParticleConfig, ParticleMapper, PosePriorConfig,
-};
+use trundle_mapping::{MapLocalizer, MotionConfig, ParticleConfig, ParticleMapper, PosePriorConfig};
 
 /// A log and how to map it.
 #[derive(Debug, Clone)]
@@ -53,8 +51,8 @@ impl LaserMapRequest {
         if FileKind::of(file)? == FileKind::MapYaml {
             let grid = read_map(file)?;
             let resolution = grid.geometry().resolution;
-            let config = self.config(depth);
-            let config = ParticleConfig { map: config.map.with_resolution(resolution), ..config };
+            let mut config = self.config(depth);
+            config.map = config.map.with_resolution(resolution);
             return Ok(MapLocalizer::from_grid(&grid, config, self.seed)?);
         }
         Expected::LocalizationMap.check(file)?;
@@ -63,12 +61,9 @@ impl LaserMapRequest {
     }
 
     fn config(&self, depth: Option<&DepthLog>) -> ParticleConfig {
-        let default = ParticleConfig::default();
-        let config = ParticleConfig {
-            particles: self.particles,
-            map: default.map.with_resolution(self.resolution),
-            ..default
-        };
+        let mut config = ParticleConfig::default();
+        config.particles = self.particles;
+        config.map = config.map.with_resolution(self.resolution);
         match depth {
             Some(depth) => self.depth_config(depth, config),
             None => config,
@@ -80,20 +75,25 @@ impl LaserMapRequest {
         let by_wheels = depth.by_wheels;
         let motion = if by_wheels { MotionConfig::default() } else { tracked_camera_motion() };
         let pose_prior = (!by_wheels && !self.poses_drift).then(PosePriorConfig::default);
-        ParticleConfig { pose_prior, ..depth_filter(depth, motion, config) }
+        let mut config = depth_filter(depth, motion, config);
+        config.pose_prior = pose_prior;
+        config
     }
 }
 
 /// The settings of a filter for the scans of a depth camera, whose motion has these errors; the others are those of `config`.
-pub(crate) fn depth_filter(depth: &DepthLog, motion: MotionConfig, config: ParticleConfig) -> ParticleConfig {
+pub(crate) fn depth_filter(
+    depth: &DepthLog,
+    motion: MotionConfig,
+    mut config: ParticleConfig,
+) -> ParticleConfig {
     let DepthLog { scan, blind_range, .. } = depth;
-    ParticleConfig {
-        map: MapperConfig { max_range: scan.max_range, blind_range: *blind_range, ..config.map },
-        motion,
-        range_noise: DEPTH_RANGE_NOISE_M,
-        range_noise_growth: scan.noise_growth,
-        ..config
-    }
+    config.map.max_range = scan.max_range;
+    config.map.blind_range = *blind_range;
+    config.motion = motion;
+    config.range_noise = DEPTH_RANGE_NOISE_M;
+    config.range_noise_growth = scan.noise_growth;
+    config
 }
 
 /// Standard deviation of a range of the depth camera at short distance \[m\]. Source: ours.
@@ -102,14 +102,14 @@ const DEPTH_RANGE_NOISE_M: f64 = 0.01;
 /// The motion of a tracked camera: a tenth of the noise of wheels alone. The wheels' noise cannot be that small: the
 /// drift of their heading is the same on every metre, and a filter with such values distorts its map.
 fn tracked_camera_motion() -> MotionConfig {
-    MotionConfig {
-        shift_per_metre: 0.05,
-        shift_per_radian: 0.02,
-        turn_per_metre: 0.02,
-        turn_per_radian: 0.04,
-        min_shift: 0.005,
-        min_turn: 0.003,
-    }
+    let mut config = MotionConfig::default();
+    config.shift_per_metre = 0.05;
+    config.shift_per_radian = 0.02;
+    config.turn_per_metre = 0.02;
+    config.turn_per_radian = 0.04;
+    config.min_shift = 0.005;
+    config.min_turn = 0.003;
+    config
 }
 
 /// The bytes of a saved filter.

@@ -16,7 +16,7 @@ use trundle_mapping::{Localized, MapLocalizer, ParticleMapper, ScanUpdate};
 /// Maps a log, or with `localize_only` localizes the robot in the requested map; writes trajectory, map, picture and summary.
 ///
 /// # Errors
-/// When the map cannot be read, a setting cannot be accepted or a file cannot be written.
+/// When the map cannot be read, a setting is invalid or a file cannot be written.
 pub fn map_log(
     request: &LaserMapRequest,
     localize_only: bool,

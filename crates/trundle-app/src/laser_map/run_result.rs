@@ -11,6 +11,9 @@ const MAX_SHARE_WITHOUT_OVERLAP: f64 = 0.5;
 /// Share of the scans that pauses left out \[1\]. Above it the run missed its goal or a limit. Source: ours.
 const MAX_SHARE_LEFT_OUT: f64 = 0.1;
 
+/// Share of the scans of a log that must be usable \[1\]. Below it the run missed its goal. Source: ours.
+const MIN_SHARE_USED: f64 = 0.1;
+
 /// The result of a log.
 #[derive(Debug)]
 pub struct LaserMapRun {
@@ -41,7 +44,9 @@ impl LaserMapRun {
         if counts.processed == 0 {
             return Some(nothing_processed(log, counts, is_stopped));
         }
-        if let Some(failure) = left_out(counts) {
+        if let Some(failure) =
+            left_out(counts).or_else(|| of_one_time(log)).or_else(|| skipped(log, is_stopped))
+        {
             return Some(failure);
         }
         if counts.without_overlap as f64 > MAX_SHARE_WITHOUT_OVERLAP * counts.processed as f64 {
@@ -73,6 +78,24 @@ impl LaserMapRun {
     }
 }
 
+/// The failure of a log whose scans all have one timestamp, so that all have one pose.
+fn of_one_time(log: &LaserLog) -> Option<String> {
+    let stamp = log.scans.first()?.scan.stamp();
+    let is_one = log.scans.len() > 1 && log.scans.iter().all(|scan| scan.scan.stamp() == stamp);
+    let count = log.scans.len();
+    is_one.then(|| {
+        format!("all {count} scans have the timestamp {stamp} s, expected one timestamp a scan: are the headers filled in?")
+    })
+}
+
+/// The failure of a log of which hardly a scan could be used.
+fn skipped(log: &LaserLog, is_stopped: bool) -> Option<String> {
+    let (used, all) = (log.scans.len(), log.scans.len() + log.skipped.len());
+    let first = log.skipped.first()?;
+    let is_rest = !is_stopped && (used as f64) < MIN_SHARE_USED * all as f64;
+    is_rest.then(|| format!("only {used} of {all} scans could be used; {}", first.problem))
+}
+
 /// The failure of a run whose pauses left out much.
 fn left_out(counts: &ScanCounts) -> Option<String> {
     let (out, all) = (counts.left_out, counts.left_out + counts.processed);
@@ -84,7 +107,7 @@ fn left_out(counts: &ScanCounts) -> Option<String> {
 fn pause_note(counts: &ScanCounts) -> String {
     let since = counts.first_pause.map_or_else(String::new, |stamp| format!(", from {stamp} s on"));
     format!(
-        "scans contradict the map that was to go on{since}, and mapping paused until a place was recognised ({} pauses): was the robot carried, or is it the map of another place?",
+        "scans contradict the map to be extended{since}, and mapping paused until a place was recognised ({} pauses): was the robot carried, or is it the map of another place?",
         counts.pauses
     )
 }
@@ -94,7 +117,7 @@ fn nothing_processed(log: &LaserLog, counts: &ScanCounts, is_stopped: bool) -> S
     let all = log.scans.len();
     if counts.lost > 0 {
         let cause = range_unit_hint(log).unwrap_or_else(|| {
-            "is it the map of this place, with the laser mounted as the log says?".to_owned()
+            "is it the map of this place, with the laser mounted as in the log?".to_owned()
         });
         let end = if is_stopped { ", then the run was stopped" } else { "" };
         return format!(

@@ -15,7 +15,7 @@ impl LaserMapRequest {
         self.refuse_topic_of_odometry()?;
         self.refuse_idle_cut()?;
         let log = self.log.display();
-        let is_sequence = SequenceInput::is_one(&self.log, &self.topics);
+        let is_sequence = SequenceInput::is_sequence(&self.log, &self.topics);
         match (is_sequence, &self.poses, laser_option) {
             (false, Some(_), _) => Err(AppError::Input(format!(
                 "--poses is about the camera of RGB-D images, and {log} holds none"

@@ -1,6 +1,7 @@
 //! Images of the camera, for views.
 
-use super::run_view::{DepthView, ImageView};
+use super::DepthView;
+use super::run_view::ImageView;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::{DepthImage, RgbdImage, Stamp};
@@ -22,6 +23,14 @@ pub(crate) struct ImageFeed {
 }
 
 impl ImageFeed {
+    /// Copies an image with its recorded depth if the last copy is old.
+    pub(crate) fn note_encoded(&mut self, stamp: Stamp, jpeg: &[u8], depth: &[u8]) {
+        if self.image.as_ref().is_none_or(|image| is_apart(image.stamp, stamp, IMAGE_PERIOD_S)) {
+            self.image = Some(Arc::new(ImageView { stamp, jpeg: jpeg.to_vec() }));
+            self.depth = Some(Arc::new(DepthView::of_encoded(stamp, depth)));
+        }
+    }
+
     /// Copies an image if the last copy is old.
     pub(crate) fn note_jpeg(&mut self, stamp: Stamp, jpeg: &[u8]) {
         if self.image.as_ref().is_none_or(|image| is_apart(image.stamp, stamp, IMAGE_PERIOD_S)) {

@@ -5,6 +5,7 @@ use super::request::OperatorRequest;
 use super::run_view::RunView;
 use super::series::SeriesView;
 use super::view_feed::ViewFeed;
+use crate::RecordingSwitch;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
@@ -12,6 +13,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use thiserror::Error;
 use trundle_core::{Invalid, MapAnnotations, RgbdImage, SensorEvent, Stamp};
+use trundle_io::EncodedRgbd;
 use trundle_runtime::{OperatorCommand, Robot, StepReport};
 
 /// Largest number of requests that wait for the run. A run takes one at each step. Source: ours.
@@ -43,6 +45,7 @@ struct Shared {
     /// Whether a front end requested a view since the last step.
     is_asked: AtomicBool,
     series: Mutex<Option<Arc<SeriesView>>>,
+    recording: Mutex<Option<RecordingSwitch>>,
     annotations: Mutex<AnnotationStore>,
     /// Held while zones or places are changed and written.
     editing: Mutex<()>,
@@ -50,6 +53,7 @@ struct Shared {
 
 /// Reason why a request does not reach the run.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum OperatorError {
     /// A number of the command is not finite or outside its range.
     #[error(transparent)]
@@ -79,8 +83,9 @@ pub fn operator_link() -> (Operator, OperatorLink) {
     let (sender, requests) = sync_channel(MAX_WAITING_REQUESTS);
     let (requests_in, view) = (Mutex::new((sender, 0)), Mutex::default());
     let (is_asked, annotations, editing) = (AtomicBool::new(false), Mutex::default(), Mutex::default());
-    let series = Mutex::default();
-    let shared = Arc::new(Shared { requests: requests_in, view, is_asked, series, annotations, editing });
+    let (series, recording) = (Mutex::default(), Mutex::default());
+    let shared =
+        Arc::new(Shared { requests: requests_in, view, is_asked, series, recording, annotations, editing });
     let link = OperatorLink::new(requests, Arc::clone(&shared));
     (Operator { shared }, link)
 }
@@ -145,6 +150,12 @@ impl Operator {
         *self.shared.series.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(series));
     }
 
+    /// The switch of the run's recording; `None` before the first step, and for work without one.
+    #[must_use]
+    pub fn recording(&self) -> Option<RecordingSwitch> {
+        self.shared.recording.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
     /// The series that the run is a part of.
     #[must_use]
     pub fn series(&self) -> Option<Arc<SeriesView>> {
@@ -164,10 +175,15 @@ impl OperatorLink {
     }
 
     /// Copies a camera image into later views if a front end watches.
-    pub(crate) fn note_image(&mut self, stamp: Stamp, jpeg: &[u8]) {
+    pub(crate) fn note_image(&mut self, image: &EncodedRgbd) {
         if self.is_watched() {
-            self.feed.images.note_jpeg(stamp, jpeg);
+            self.feed.images.note_encoded(image.stamp, &image.color_jpeg, &image.depth);
         }
+    }
+
+    /// Offers the switch of the run's recording to front ends.
+    pub(crate) fn show_recording(&self, switch: RecordingSwitch) {
+        *self.shared.recording.lock().unwrap_or_else(PoisonError::into_inner) = Some(switch);
     }
 
     /// Copies an image of a simulator into later views if a front end watches.

@@ -40,6 +40,16 @@ impl MapFolder {
         Ok(maps)
     }
 
+    /// The folder that a text names.
+    ///
+    /// # Errors
+    /// As [`MapFolder::check`].
+    pub fn checked(text: &str) -> Result<PathBuf, String> {
+        let folder = PathBuf::from(text);
+        Self::check(&folder)?;
+        Ok(folder)
+    }
+
     /// Refuses a path that is no folder that can be read.
     ///
     /// # Errors
@@ -110,7 +120,7 @@ impl MapFolder {
         let yaml = String::from_utf8(yaml).map_err(|_| "its YAML file is not UTF-8 text".to_owned())?;
         let broken = |error| {
             tracing::warn!("the map '{name}' cannot be loaded: {error}");
-            "its files are broken; the log of the program says where".to_owned()
+            "its files are broken; the place is in the log of the program".to_owned()
         };
         let description = MapDescription::parse(&path, yaml).map_err(broken)?;
         let picture = self.read_file("its picture", description.picture_path(), MAX_PICTURE_BYTES)?;
@@ -230,7 +240,8 @@ mod tests {
             assert_eq!(refusal(name), format!("Map '{name}': its picture {outside}"));
         }
         for name in ["own", "text"] {
-            let expected = format!("Map '{name}': its files are broken; the log of the program says where.");
+            let expected =
+                format!("Map '{name}': its files are broken; the place is in the log of the program.");
             assert_eq!(refusal(name), expected);
         }
     }

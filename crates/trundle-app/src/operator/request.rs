@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use trundle_runtime::OperatorCommand;
 
-/// A command of an operator, with the number by which views name its mission.
+/// A command of an operator, with its number. Views identify the mission of a command by this number.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OperatorRequest {
     /// Number of the request, from 1, in the order of sending.

@@ -1,11 +1,11 @@
 //! View of a run for its front ends.
 
+use super::DepthView;
 use std::fmt;
 use std::sync::Arc;
 
 use trundle_core::{
-    Battery, DepthImage, OccupancyGrid, Odometry, Pose2, PoseEstimate, Scan, Stamp, Trajectory, Twist2,
-    Vector3,
+    Battery, OccupancyGrid, Odometry, Pose2, PoseEstimate, Scan, Stamp, Trajectory, Twist2, Vector2, Vector3,
 };
 use trundle_planning::MovingObstacle;
 use trundle_runtime::{DriveState, MotionHold, RunSetting, Task, TaskRecord, TransitionReason};
@@ -34,7 +34,7 @@ pub struct RunView {
     /// `map_from_base` at that scan, by the present estimate.
     pub scan_pose: Option<Pose2>,
     /// The newest plan, map frame.
-    pub plan: Option<Arc<Trajectory>>,
+    pub plan: Option<Arc<PlanView>>,
     /// The map, at most one second old.
     pub map: Option<Arc<MapView>>,
     /// Surroundings of the robot besides the map.
@@ -214,32 +214,13 @@ pub struct ImageView {
     pub jpeg: Vec<u8>,
 }
 
-/// A thinned depth image of the camera.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct DepthView {
-    /// Time of the image.
-    pub stamp: Stamp,
-    /// Pixels in a row.
-    pub width: usize,
-    /// Depth of each pixel in [`DepthView::UNIT_M`], row by row; 0: not measured.
-    pub pixels: Vec<u8>,
-}
-
-impl DepthView {
-    /// Unit of depth \[m\]: up to 10.2 m. Source: ours; the depth cameras see less far.
-    pub const UNIT_M: f64 = 0.04;
-    /// Largest width \[px\]: an image of 20 kB. Source: ours.
-    const MAX_WIDTH: usize = 160;
-
-    /// Every second, third ... pixel of an image.
-    #[must_use]
-    pub fn of(stamp: Stamp, depth: &DepthImage) -> Self {
-        let stride = depth.width().div_ceil(Self::MAX_WIDTH).max(1);
-        let unit = |depth: f32| if depth > 0.0 { (f64::from(depth) / Self::UNIT_M).ceil() as u8 } else { 0 };
-        let rows = (0..depth.height()).step_by(stride).map(|y| depth.row(y));
-        let pixels = rows.flat_map(|row| row.iter().step_by(stride).map(|depth| unit(*depth))).collect();
-        Self { stamp, width: depth.width().div_ceil(stride), pixels }
-    }
+/// A plan, map frame.
+#[derive(Debug, Clone)]
+pub struct PlanView {
+    /// The way-points of the search, start and goal included.
+    pub waypoints: Vec<Vector2>,
+    /// The curve through them with its times.
+    pub trajectory: Trajectory,
 }
 
 /// A mission as displayed.
@@ -266,20 +247,4 @@ pub struct MapView {
     pub revision: u64,
     /// The map.
     pub grid: OccupancyGrid,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_depth_image_is_thinned_and_keeps_what_was_not_measured() {
-        let mut depth = DepthImage::filled(640, 480, 2.0);
-        depth[(4, 0)] = 0.0;
-        depth[(8, 0)] = 60.0;
-        let view = DepthView::of(Stamp::default(), &depth);
-        assert_eq!((view.width, view.pixels.len()), (160, 160 * 120));
-        assert_eq!(view.pixels[..3], [50, 0, 255]);
-        assert_eq!(DepthView::of(Stamp::default(), &DepthImage::filled(3, 2, 0.01)).pixels, [1; 6]);
-    }
 }

@@ -2,10 +2,11 @@
 
 use super::image_feed::ImageFeed;
 use super::perception_feed::PerceptionFeed;
-use super::run_view::{MapView, MissionView, PerceptionView, RunCounts, RunState, RunView};
+use super::run_view::{MapView, MissionView, PerceptionView, PlanView, RunCounts, RunState, RunView};
 use super::visual_map_feed::VisualMapFeed;
 use std::sync::Arc;
-use trundle_core::{Scan, Stamp, Trajectory, Twist2};
+use trundle_core::{Scan, Stamp, Twist2};
+use trundle_planning::PlanResult;
 use trundle_runtime::{Robot, Stage, StepReport};
 
 /// Time between two copies of the map \[s\]. A map of 100 x 100 m is 4 million cells, a copy of 1 ms. Source: ours.
@@ -17,7 +18,7 @@ pub(super) struct ViewFeed {
     twist: Twist2,
     mission: MissionView,
     scan: Option<Arc<Scan>>,
-    plan: Option<Arc<Trajectory>>,
+    plan: Option<Arc<PlanView>>,
     map: Option<Arc<MapView>>,
     map_copied: Option<Stamp>,
     /// Number of replaced maps.
@@ -112,7 +113,11 @@ impl ViewFeed {
 
     fn update_plan(&mut self, robot: &Robot, report: &StepReport) {
         if report.replanned {
-            self.plan = robot.plan().map(|plan| Arc::new(plan.trajectory.clone()));
+            let view = |plan: &PlanResult| PlanView {
+                waypoints: plan.waypoints.points().to_vec(),
+                trajectory: plan.trajectory.clone(),
+            };
+            self.plan = robot.plan().map(|plan| Arc::new(view(plan)));
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::goal_refusal::{GoalRefusal, MovedGoal};
 use super::request::{NamedPose, PlanRequest};
+use crate::MapExtent;
 use trundle_core::{OccupancyGrid, Pose2, Twist2};
 use trundle_planning::{MultiGoalPlan, Plan, Planner, WaypointGraph};
 
@@ -37,7 +38,13 @@ impl PlanRequest {
         if matches!(why, Plan::Blocked { .. }) && self.graph.is_some() {
             whole = format!("{whole} along the graph");
         }
-        format!("{whole}: {why}{}", self.what_changes(why, refusal.from, *goal))
+        let place = match why {
+            Plan::StartOutside | Plan::GoalOutside => {
+                format!(", which has {}", MapExtent::of(self.grid.geometry()))
+            }
+            _ => String::new(),
+        };
+        format!("{whole}: {why}{place}{}", self.what_changes(why, refusal.from, *goal))
     }
 
     /// The pose at which a leg begins: the start or the previous goal, with its name if the robot stands at that pose.

@@ -1,9 +1,9 @@
 //! Keep-out mask, speed mask and way-point graph of a plan, read from their files.
 
-use crate::AppError;
+use crate::{AppError, MapExtent};
 use std::path::Path;
-use trundle_core::{Cell, GridGeometry, OccupancyGrid};
-use trundle_io::{read_graph, read_keep_out_mask, read_speed_mask};
+use trundle_core::{Cell, GridGeometry, OccupancyGrid, Vector2};
+use trundle_io::{degrees_hint, read_graph, read_keep_out_mask, read_speed_mask};
 use trundle_planning::{CostMask, Planner, SpeedMask, WaypointGraph};
 use trundle_viz::MaskShares;
 
@@ -55,8 +55,8 @@ pub fn set_speed_mask(
     Ok((MaskShares { geometry: mask.geometry, shares }, limits))
 }
 
-/// The way-point graph of a file.
-pub fn read_lanes(path: &Path) -> Result<WaypointGraph, AppError> {
+/// The way-point graph of a file, of which a node lies on the map.
+pub fn read_lanes(path: &Path, map: &GridGeometry) -> Result<WaypointGraph, AppError> {
     let file = read_graph(path)?;
     if !file.left.is_empty() {
         let kinds: Vec<String> = file.left.iter().map(|(kind, count)| format!("{kind} ({count})")).collect();
@@ -66,30 +66,31 @@ pub fn read_lanes(path: &Path) -> Result<WaypointGraph, AppError> {
             path.display()
         );
     }
+    require_node_on(path, map, &file.nodes)?;
     WaypointGraph::one_way(file.nodes, file.lanes)
         .map_err(|error| AppError::Input(format!("{}: {error}", path.display())))
 }
 
+/// Refuses a graph without a node on the map: such a graph belongs to another map or another frame, or its units are others.
+fn require_node_on(path: &Path, map: &GridGeometry, nodes: &[Vector2]) -> Result<(), AppError> {
+    let (map, points) = (MapExtent::of(map), nodes.iter().map(|node| [node.x, node.y]).collect::<Vec<_>>());
+    if points.iter().any(|point| map.contains(point)) {
+        return Ok(());
+    }
+    let cause = degrees_hint(&points).unwrap_or_else(|| "is it the graph of this map?".to_owned());
+    let [x, y] = points.first().copied().unwrap_or_default();
+    Err(AppError::Input(format!(
+        "{}: no node lies on the map, the first is at ({x}, {y}) m, the map has {map}: {cause}",
+        path.display()
+    )))
+}
+
 /// Refuses a mask without overlap with the map: such a mask belongs to another map or another frame.
 fn require_overlap(path: &Path, mask: &GridGeometry, map: &GridGeometry) -> Result<(), AppError> {
-    let span = |g: &GridGeometry, axis: usize, cells: usize| {
-        (g.origin[axis], g.origin[axis] + cells as f64 * g.resolution)
-    };
-    let apart = |axis: usize, cells: (usize, usize)| {
-        let ((a, b), (c, d)) = (span(mask, axis, cells.0), span(map, axis, cells.1));
-        b <= c || d <= a
-    };
-    if apart(0, (mask.width, map.width)) || apart(1, (mask.height, map.height)) {
-        let (x, y) = (span(mask, 0, mask.width), span(mask, 1, mask.height));
-        let message = format!(
-            "{}: the mask lies beside the map: x {:.2} to {:.2} m, y {:.2} to {:.2} m",
-            path.display(),
-            x.0,
-            x.1,
-            y.0,
-            y.1
-        );
-        return Err(AppError::Input(message));
+    let (mask, map) = (MapExtent::of(mask), MapExtent::of(map));
+    if mask.overlaps(&map) {
+        return Ok(());
     }
-    Ok(())
+    let path = path.display();
+    Err(AppError::Input(format!("{path}: the mask lies beside the map: {mask}, the map has {map}")))
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Instant;
 use trundle_core::{Footprint, OccupancyGrid, Pose2, Twist2, Vector2};
-use trundle_planning::{MultiGoalPlan, Plan, Planner, PlannerConfig, UnknownIs, WaypointGraph};
+use trundle_planning::{MultiGoalPlan, Plan, Planner, UnknownIs, WaypointGraph};
 use trundle_runtime::RobotConfig;
 use trundle_viz::MaskShares;
 
@@ -54,9 +54,12 @@ impl NamedPose {
             Some(pose) => Ok(Self { pose: *pose, name: Some(name.to_owned()) }),
             None => {
                 let known: Vec<&str> = places.keys().map(String::as_str).collect();
-                let message =
-                    format!("{}: no place '{name}'; there are: {}", file.display(), known.join(", "));
-                Err(AppError::Input(message))
+                let known = match known[..] {
+                    [] => "the file has no place, expected tables [NAME] with x, y (m) and heading_deg"
+                        .to_owned(),
+                    _ => format!("there are: {}", known.join(", ")),
+                };
+                Err(AppError::Input(format!("{}: no place '{name}'; {known}", file.display())))
             }
         }
     }
@@ -110,7 +113,7 @@ impl PlanRequest {
     /// Reads and checks the files. `goal_tolerance_m`: distance from a blocked goal that still counts; `None` for the robot's own.
     ///
     /// # Errors
-    /// Names the file or value that cannot be accepted.
+    /// Names the file or the invalid value.
     pub fn read(
         files: &PlanFiles,
         (start, goals): (NamedPose, Vec<NamedPose>),
@@ -118,13 +121,17 @@ impl PlanRequest {
         robot: &RobotConfig,
     ) -> Result<Self, AppError> {
         let grid = read_map(&files.map)?;
-        let graph = files.graph.as_deref().map(read_lanes).transpose()?;
+        let graph = files.graph.as_deref().map(|path| read_lanes(path, grid.geometry())).transpose()?;
         let footprint = robot.footprint()?;
         // No path leads beyond the edge of a given map.
         let goal_tolerance = goal_tolerance_m.unwrap_or(robot.planning.goal_tolerance);
-        let config = PlannerConfig { beyond: 0.0, goal_tolerance, ..robot.planning };
+        let mut config = robot.planning;
+        config.beyond = 0.0;
+        config.goal_tolerance = goal_tolerance;
         let mut planner = Planner::new(config, &footprint, robot.limits, robot.drive)?;
-        let open = PlannerConfig { unknown: UnknownIs::Free, goal_tolerance: 0.0, ..config };
+        let mut open = config;
+        open.unknown = UnknownIs::Free;
+        open.goal_tolerance = 0.0;
         let mut unknown_free = (config.unknown == UnknownIs::Obstacle)
             .then(|| Planner::new(open, &footprint, robot.limits, robot.drive))
             .transpose()?;
@@ -135,7 +142,8 @@ impl PlanRequest {
         let slow = slow.map(|path| set_speed_mask(path, robot.limits.v, &grid, &mut planner)).transpose()?;
         let (slow, speed_limits) = slow.unzip();
         // The comparison is for the goal itself, not for a pose nearby.
-        let exact = PlannerConfig { goal_tolerance: 0.0, ..config };
+        let mut exact = config;
+        exact.goal_tolerance = 0.0;
         let unmasked = Planner::new(exact, &footprint, robot.limits, robot.drive)?;
         let map = files.map.clone();
         Ok(Self {

@@ -11,11 +11,19 @@ use trundle_core::Twist2;
 use trundle_io::EncodedEvent;
 
 /// An event and the instant of its arrival.
+#[non_exhaustive]
 pub struct TimedEvent {
     /// The event.
     pub event: EncodedEvent,
     /// The instant of its arrival.
     pub at: Instant,
+}
+
+impl TimedEvent {
+    /// An event that arrives now.
+    pub fn now(event: EncodedEvent) -> Self {
+        Self { event, at: Instant::now() }
+    }
 }
 
 /// A body that runs in its own threads and sends its events into the inbox given at its start.
@@ -44,6 +52,18 @@ pub struct Lateness {
     pub max_ms: f64,
 }
 
+/// Number of events that arrived out of order.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct EventOrderCounts {
+    /// Events that were put in order.
+    #[serde(rename = "events_put_in_order")]
+    pub reordered: u64,
+    /// Events that came too late for that and were dropped.
+    #[serde(rename = "events_too_late")]
+    pub late: u64,
+}
+
 /// Timing of the body. Delays of a simulated body also appear in the robot's figures.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct BodyTiming {
@@ -58,7 +78,10 @@ pub struct BodyTiming {
     pub image_age_median_ms: f64,
     /// Age of an image at its arrival, 99th percentile \[ms\].
     pub image_age_p99_ms: f64,
-    /// The last fault of the camera, in words; `None` of a camera without one.
+    /// Events that arrived out of order.
+    #[serde(flatten)]
+    pub order: EventOrderCounts,
+    /// The last fault of the camera, in words; `None` for a camera without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera_fault: Option<String>,
     /// Resident memory of the program.

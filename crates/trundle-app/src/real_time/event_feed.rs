@@ -1,6 +1,7 @@
 //! The path of events from drivers into a run.
 
-use super::{BodyTiming, MemoryUsage, TimedEvent};
+use super::event_order::{EventOrder, MAX_HOLD_S, Placed};
+use super::{BodyTiming, EventOrderCounts, MemoryUsage, TimedEvent};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use trundle_core::{BodyEvent, BodyEventKind, SensorEvent, Stamp};
@@ -15,7 +16,8 @@ const MIN_SILENCE: Duration = Duration::from_millis(100);
 /// Callback for each event of the drivers, in the thread that sends the event; the callback must not wait.
 pub type EventObserver = Arc<dyn Fn(&SensorEvent) + Send + Sync>;
 
-/// Sends the events of drivers into a run, from any thread. Images are encoded in the sending thread.
+/// Sends the events of drivers into a run, from any thread. Images are encoded in the sending thread. Events out of order are put in order
+/// where that takes at most 0.1 s.
 #[derive(Clone)]
 pub struct EventFeed {
     events: InboxSender<TimedEvent>,
@@ -35,6 +37,7 @@ struct FeedState {
     /// [ms]
     image_ages: Histogram,
     memory: MemoryUsage,
+    order: EventOrder,
 }
 
 impl EventFeed {
@@ -65,6 +68,19 @@ impl EventFeed {
         }
     }
 
+    /// Number of events out of order so far.
+    #[must_use]
+    pub fn order_counts(&self) -> EventOrderCounts {
+        self.state().order.counts()
+    }
+
+    /// Hands on the events whose wait for earlier ones is over. Returns whether others wait.
+    pub(super) fn hand_on_due(&self) -> bool {
+        let mut state = self.state();
+        self.hand_on(&mut state);
+        !state.order.is_empty()
+    }
+
     /// Reports silence if no event has come for long enough.
     pub(super) fn report_silence(&self) {
         let now = Instant::now();
@@ -73,7 +89,7 @@ impl EventFeed {
         if now - since >= MIN_SILENCE {
             state.newest = Some(now);
             drop(state);
-            let event = BodyEvent { stamp: (self.clock)(), kind: BodyEventKind::Silence };
+            let event = BodyEvent::new((self.clock)(), BodyEventKind::Silence);
             self.events.put(InboxItem::Urgent(TimedEvent { event: EncodedEvent::Body(event), at: now }));
         }
     }
@@ -86,6 +102,7 @@ impl EventFeed {
             lateness: None,
             images_not_taken: state.images_refused,
             images: state.images,
+            order: state.order.counts(),
             camera_fault: None,
             image_age_median_ms: age(0.5),
             image_age_p99_ms: age(0.99),
@@ -94,23 +111,54 @@ impl EventFeed {
     }
 
     fn put(&self, event: EncodedEvent) {
-        let at = Instant::now();
-        let is_image = matches!(event, EncodedEvent::Rgbd(_));
-        let age_ms = ((self.clock)() - event.stamp()) * 1e3;
-        let event = TimedEvent { event, at };
-        let is_taken =
-            self.events.put(if is_image { InboxItem::Deferred(event) } else { InboxItem::Urgent(event) });
+        let (at, now) = (Instant::now(), (self.clock)());
         let mut state = self.state();
         state.newest = Some(at);
         state.memory.sample((at - self.origin).as_secs_f64());
-        if is_image {
+        let stamp = event.stamp();
+        if matches!(event, EncodedEvent::Rgbd(_)) {
             state.images += 1;
-            state.images_refused += u64::from(!is_taken);
-            state.image_ages.note(age_ms.max(0.0));
+            state.image_ages.note(((now - stamp) * 1e3).max(0.0));
         }
+        match state.order.place(TimedEvent { event, at }, now) {
+            Placed::Passed(event) => self.deliver(&mut state, event),
+            Placed::Held => {}
+            Placed::Dropped => log_late(state.order.counts().late, stamp, now),
+        }
+        self.hand_on(&mut state);
+    }
+
+    /// Hands on the events whose wait is over. The lock on `state` keeps them in order.
+    fn hand_on(&self, state: &mut FeedState) {
+        let now = (self.clock)();
+        while let Some(event) = state.order.pop(now) {
+            self.deliver(state, event);
+        }
+    }
+
+    fn deliver(&self, state: &mut FeedState, event: TimedEvent) {
+        let is_image = matches!(event.event, EncodedEvent::Rgbd(_));
+        let item = if is_image { InboxItem::Deferred(event) } else { InboxItem::Urgent(event) };
+        state.images_refused += u64::from(!self.events.put(item) && is_image);
     }
 
     fn state(&self) -> std::sync::MutexGuard<'_, FeedState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Logs an event that came too late: the first as a warning.
+fn log_late(count: u64, stamp: Stamp, now: Stamp) {
+    let age_ms = (now - stamp) * 1e3;
+    if count == 1 {
+        tracing::warn!(
+            "an event of {stamp} s came {age_ms:.0} ms after its stamp and behind a newer one, expected at most {:.0} ms: it is dropped; \
+             the report counts such events",
+            MAX_HOLD_S * 1e3
+        );
+    } else {
+        tracing::debug!(
+            "an event of {stamp} s came {age_ms:.0} ms after its stamp and is dropped, {count} so far"
+        );
     }
 }

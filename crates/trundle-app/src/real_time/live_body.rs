@@ -11,6 +11,8 @@ use trundle_core::Twist2;
 
 /// Time between two checks for silence: a tenth of the silence that is reported. Source: ours.
 const SILENCE_CHECK_PERIOD: Duration = Duration::from_millis(10);
+/// Time between two checks for events whose wait is over: a tenth of the period of a base. Source: ours.
+const ORDER_CHECK_PERIOD: Duration = Duration::from_millis(2);
 
 /// A body of drivers: their events come by an [`EventFeed`], the base takes commands from a channel.
 pub struct LiveBody {
@@ -35,8 +37,10 @@ impl LiveBody {
         let is_over = Arc::<AtomicBool>::default();
         let (watched, over) = (feed.clone(), Arc::clone(&is_over));
         let watch = move || {
+            let mut period = SILENCE_CHECK_PERIOD;
             while !over.load(Ordering::Relaxed) {
-                std::thread::sleep(SILENCE_CHECK_PERIOD);
+                std::thread::sleep(period);
+                period = if watched.hand_on_due() { ORDER_CHECK_PERIOD } else { SILENCE_CHECK_PERIOD };
                 watched.report_silence();
             }
         };

@@ -99,6 +99,9 @@ impl RealTimeReport {
         rows.push(row("age of images on arrival: median, p99".to_owned(), milliseconds(&age)));
         let images = format!("{} of {}", body.images_not_taken, body.images);
         rows.push(row("images not taken".to_owned(), images));
+        let order = &body.order;
+        let order = format!("{}, {}", order.reordered, order.late);
+        rows.push(row("events put in order, too late".to_owned(), order));
         rows.extend(body.camera_fault.clone().map(|fault| row("last fault of the camera".to_owned(), fault)));
         let half = self.memory.samples.last().map_or(0.0, |(time, _)| time / 2.0);
         if let Some(growth) = self.memory.growth_mb_an_hour(half).filter(|_| half >= MIN_MEMORY_HALF_S) {

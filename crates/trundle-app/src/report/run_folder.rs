@@ -1,13 +1,17 @@
 //! The output folder of a run: map, trajectories, report, timing page, summary.
 
-use super::{RunNumbers, camera_view, landmarks_in_map, timing_page, write_zones};
+use super::timing_page::REPORT_FILE;
+use super::{RunNumbers, camera_view, landmarks_in_map, state_log, timing_page, write_zones};
 use crate::real_time::RealTimeReport;
 use crate::setup::mission_text;
-use crate::{AppError, FinishedRun, PoseSample, RunSetup};
+use crate::{AppError, FinishedRun, PoseSample, RunLog, RunSetup};
 use std::path::PathBuf;
 use trundle_core::{Footprint, Pose2};
 use trundle_io::{IoError, OutputFolder, trajectory_text_from_planar, write_map};
 use trundle_viz::{Card, Chart, Color, Figure, RunMap, RunReport, Table, Verdict};
+
+/// File of the wall-clock figures.
+const TIMING_FILE: &str = "timing.html";
 
 /// The written folder of a run.
 pub struct RunOutput {
@@ -29,8 +33,10 @@ pub fn write_run(
     timing: Option<&RealTimeReport>,
     folder: OutputFolder,
 ) -> Result<RunOutput, AppError> {
+    for name in run.recording.failed_files.drain(..) {
+        _ = std::fs::remove_file(folder.staged(&name));
+    }
     if let Some(error) = run.recording.error.take() {
-        _ = std::fs::remove_file(folder.staged("recording.mcap"));
         folder.leave_out(error);
     }
     run.recording.checkpoint_error.take().into_iter().for_each(|error| folder.leave_out(error));
@@ -45,8 +51,8 @@ pub fn write_run(
     }
     let report = report(setup, run, &numbers);
     folder.write("map.png", &report.map.to_png())?;
-    folder.write("report.html", report.to_html().as_bytes())?;
-    folder.write("timing.html", timing_page::html(run, &numbers, timing).as_bytes())?;
+    folder.write(REPORT_FILE, report.to_html().as_bytes())?;
+    folder.write(TIMING_FILE, timing_page::html(run, &numbers, timing).as_bytes())?;
     folder.write("summary.json", numbers.summary(setup, run, timing).to_json().as_bytes())?;
     let (target, committed) = (folder.target().to_owned(), folder.commit());
     match committed {
@@ -68,6 +74,7 @@ fn report(setup: &RunSetup, run: &FinishedRun, numbers: &RunNumbers) -> RunRepor
     RunReport {
         title: title(setup),
         subtitle: subtitle(setup),
+        links: vec![("Durations of the stages".to_owned(), TIMING_FILE.to_owned())],
         verdict: Some(if numbers.is_success() { Verdict::Ok(verdict) } else { Verdict::Failed(verdict) }),
         cards: cards(numbers),
         map: RunMap {
@@ -94,7 +101,14 @@ fn report(setup: &RunSetup, run: &FinishedRun, numbers: &RunNumbers) -> RunRepor
             .collect(),
         figures: Vec::new(),
         tables: vec![table(numbers)],
+        states: states(&run.log),
     }
+}
+
+fn states(log: &RunLog) -> Option<Table> {
+    let when = if log.is_brief() { " in the last minute" } else { "" };
+    let table = || state_log(&format!("Changes of state{when}: {}", log.changes.len()), &log.changes);
+    (!log.changes.is_empty()).then(table)
 }
 
 fn title(setup: &RunSetup) -> String {
@@ -127,7 +141,7 @@ fn cards(numbers: &RunNumbers) -> Vec<Card> {
     let contacts = numbers.contacts.to_string();
     cards.push(Card::new("contacts", &contacts).good(numbers.contacts == 0));
     cards.push(Card::new("driven", &format!("{:.1}", numbers.path_length)).unit("m"));
-    cards.push(Card::new("time", &format!("{:.0}", numbers.duration)).unit("s"));
+    cards.push(Card::new("time", &format!("{:.1}", numbers.duration)).unit("s"));
     cards
 }
 

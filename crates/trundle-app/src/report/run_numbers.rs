@@ -53,6 +53,9 @@ pub struct RunEnd {
     pub state: DriveState,
     /// Whether an operator gave the missions: the end of the run is then no failure.
     pub is_operated: bool,
+    /// Whether the run had only the sensors of a robot that something else drove, and no mission.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_of_sensors: bool,
     /// The time limit that ended the run \[s\], if one did.
     pub out_of_time: Option<f64>,
     /// Numbers of tasks at the end, with and without a goal.
@@ -79,6 +82,7 @@ impl RunEnd {
             tasks,
             state: log.state.clone(),
             is_operated: setup.is_operated,
+            is_of_sensors: setup.is_of_sensors(),
             out_of_time: setup.is_out_of_time(log).then_some(setup.time_limit),
         }
     }
@@ -90,7 +94,7 @@ impl RunEnd {
 
     fn why_not_arrived(&self) -> String {
         match self.out_of_time {
-            Some(limit) => format!("the time limit of {limit:.0} s ended the run ({})", self.state),
+            Some(limit) => format!("the time limit of {limit} s ended the run ({})", self.state),
             None => format!("the robot did not arrive ({})", self.state),
         }
     }
@@ -149,6 +153,9 @@ impl RunNumbers {
 
     /// Whether every goal was reached without a contact, in truth if it is known.
     pub fn is_success(&self) -> bool {
+        if self.end.is_of_sensors {
+            return !self.end.is_cut() && self.tracked.ok > 0;
+        }
         if self.end.is_operated {
             let is_done = self.end.tasks.done > 0 && self.end.tasks.left == 0;
             return is_done && self.goals_missed() == 0 && self.contacts == 0;
@@ -169,6 +176,9 @@ impl RunNumbers {
 
     /// Result of the run, in one sentence.
     pub fn verdict(&self) -> String {
+        if self.end.is_of_sensors {
+            return self.sensors_verdict();
+        }
         if self.is_success() {
             return match self.goals.iter().filter(|goal| goal.end == TaskEnd::Done).count() {
                 0 => "Mission done, nothing touched.".to_owned(),
@@ -199,6 +209,15 @@ impl RunNumbers {
             faults.push(format!("{} contacts with obstacles", self.contacts));
         }
         format!("Failed: {}.", faults.join("; "))
+    }
+
+    /// The verdict of a run on the sensors of a robot that something else drove.
+    fn sensors_verdict(&self) -> String {
+        match self.is_success() {
+            true => "Replayed: the robot had no mission; it located itself and mapped.".to_owned(),
+            false if self.end.is_cut() => "Failed: the run was ended early.".to_owned(),
+            false => "Failed: the robot tracked no image.".to_owned(),
+        }
     }
 
     /// The verdict of a run that the operator ended.
@@ -269,6 +288,7 @@ impl RunNumbers {
             .set("scene", &setup.scene)
             .set("seed", setup.seed)
             .set("success", self.is_success())
+            .set("cut", &run.cut)
             .set("state", self.end.state.to_string())
             .set("reason_kinds", self.end.state.reason().map(Reason::kinds).unwrap_or_default())
             .set("out_of_time_s", self.end.out_of_time)

@@ -4,6 +4,9 @@ use super::{RunNumbers, stage_rows};
 use crate::{FinishedRun, real_time::RealTimeReport};
 use trundle_viz::{Card, Chart, Color, Figure, Report, Table};
 
+/// File of the run's report, to which the page links.
+pub const REPORT_FILE: &str = "report.html";
+
 /// Wall-clock times of every stage of a run, queues and drops: the only page that differs between a run and its replay.
 pub fn html(run: &FinishedRun, numbers: &RunNumbers, timing: Option<&RealTimeReport>) -> String {
     let header = ["stage", "median, ms", "p99", "p99.9", "max", "runs"];
@@ -14,6 +17,7 @@ pub fn html(run: &FinishedRun, numbers: &RunNumbers, timing: Option<&RealTimeRep
             "Times of the clock on the wall. In simulated time nothing waits and nothing is dropped; in real time of the \
              images that come while one is looked at only the newest is kept.",
         )
+        .link("Report of the run", REPORT_FILE)
         .card(Card::new("by the clock", &format!("{:.1}", run.seconds)).unit("s"))
         .card(Card::new("of the robot's time", &format!("{:.1}", numbers.duration)).unit("s"))
         .card(Card::new("images dropped", &numbers.images_dropped.len().to_string()))

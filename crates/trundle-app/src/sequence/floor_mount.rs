@@ -19,7 +19,7 @@ const MIN_IMAGE_SHARE: f64 = 0.5;
 const START_TILTS_DEG: [f64; 2] = [0.0, 30.0];
 /// Pixels between two samples below the floor. Source: ours.
 const SAMPLE_STEP_PX: usize = 8;
-/// Distance below a plane from which a point shows that the plane is a table and not the floor \[m\]. Source: ours.
+/// Smallest distance below a plane at which a point shows that the plane is a table and not the floor \[m\]. Source: ours.
 const BELOW_FLOOR_M: f64 = 0.1;
 /// Largest share of points below the floor \[1\]: stairs and errors of depth. Source: ours.
 const MAX_BELOW_SHARE: f64 = 0.05;

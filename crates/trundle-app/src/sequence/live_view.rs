@@ -6,7 +6,7 @@ use crate::operator::{
 };
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use trundle_core::{Pose2, Pose3, RgbdImage, Scan, Stamp, Twist2};
+use trundle_core::{Hypotenuse, Pose2, Pose3, RgbdImage, Scan, Stamp, Twist2};
 use trundle_mapping::{GridMapper, MapperConfig};
 use trundle_runtime::{LevelMap, Stage, StageTimes};
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
@@ -148,7 +148,7 @@ fn twist_since((then, before): (Stamp, Pose2), (now, pose): (Stamp, Pose2)) -> T
     let seconds = now - then;
     let step = before.inverse() * pose;
     if seconds > 0.0 {
-        Twist2::new(step.x.hypot(step.y) / seconds, step.theta / seconds)
+        Twist2::new(step.x.hypotenuse(step.y) / seconds, step.theta / seconds)
     } else {
         Twist2::ZERO
     }

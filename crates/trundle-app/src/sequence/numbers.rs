@@ -27,6 +27,7 @@ pub fn sequence_rows(
             format!("{} / {} / {} / {}", c.ok, c.weak, c.dead_reckoned, c.lost),
         ),
         row("frames with a pose, missing", placed(run)),
+        row("poses by images / by odometry alone", posed_by(run)),
         row("motions by odometry", run.odometry_priors().to_string()),
         row("keyframes", run.slam.keyframes().count().to_string()),
         row("landmarks", run.slam.landmarks().count().to_string()),
@@ -69,6 +70,11 @@ fn placed(run: &SequenceRun) -> String {
     format!("{posed} of {frames}, {:.1} %", trajectory.missing_share() * 1e2)
 }
 
+/// Frames with a pose by what gives it.
+fn posed_by(run: &SequenceRun) -> String {
+    format!("{} / {}", run.trajectory.by_images(), run.trajectory.by_odometry)
+}
+
 /// `summary.json`.
 pub fn summary(
     request: &SequenceRequest,
@@ -79,6 +85,7 @@ pub fn summary(
     let mut summary = Summary::new("slam");
     let c = run.counts;
     let failure = run.failure().or_else(|| surface.failure.clone());
+    let issues: Vec<String> = run.slam.calibration_issues().iter().map(ToString::to_string).collect();
     let is_interrupted = run.is_interrupted || surface.is_interrupted;
     summary
         .set("success", failure.is_none() && !is_interrupted)
@@ -87,6 +94,8 @@ pub fn summary(
         .set("cut", input.cut_report())
         .set("camera", &input.camera.name)
         .set("camera_assumed", input.camera.is_assumed)
+        .set("depth_scale", input.depth_scale())
+        .set("depth_scale_assumed", input.camera.is_assumed || !input.camera.is_depth_scale_known)
         .set("camera_by_floor", input.floor_mount)
         .set("camera_readout_by_images_s", input.readout_by_images.map(|found| found.readout_s))
         .set("seed", request.seed)
@@ -98,13 +107,15 @@ pub fn summary(
         .set("frames_dead_reckoned", c.dead_reckoned)
         .set("frames_lost", c.lost)
         .set("frames_posed", run.trajectory.poses.len())
+        .set("frames_posed_by_images", run.trajectory.by_images())
+        .set("frames_posed_by_odometry", run.trajectory.by_odometry)
         .set("frames_without_pose", run.trajectory.missing())
         .set("missing_share", run.trajectory.missing_share())
         .set("trajectory", if run.trajectory.is_fused { "fused" } else { "visual" })
         .set("keyframes", run.slam.keyframes().count())
         .set("landmarks", run.slam.landmarks().count())
         .set("loops_closed", run.slam.loops().len())
-        .set("warnings", run.slam.calibration_issues().iter().map(ToString::to_string).collect::<Vec<_>>())
+        .set("calibration_issues", issues)
         .set("ate_rmse_m", comparison.map(|c| c.absolute.statistics.rmse))
         .set("ate_max_m", comparison.map(|c| c.absolute.statistics.max))
         .set("ate_pairs", comparison.map(|c| c.absolute.pairs.len()))

@@ -9,7 +9,7 @@ use trundle_io::ros_message::RosMessage;
 use trundle_io::{EncodedEvent, EncodedRgbd, IoError, OutputFolder, Recorder, ros_message};
 use trundle_slam::{KeyframeId, RgbdSlam, TrackReport};
 
-/// Shared landmarks from which two keyframes are drawn as covisible; with fewer they are not linked. Source: ours.
+/// Smallest number of shared landmarks at which two keyframes are drawn as covisible. Source: ours.
 const MIN_SHARED_LANDMARKS: usize = 30;
 
 /// The frame that camera poses, landmarks and keyframes are in.

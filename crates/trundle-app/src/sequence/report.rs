@@ -56,6 +56,7 @@ pub fn page(
         figures: vec![visual_map(run)],
         charts,
         tables: vec![rows.iter().cloned().fold(Table::new("The sequence", ["what", "value"]), Table::row)],
+        ..RunReport::default()
     }
 }
 

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use trundle_core::{Invalid, Pose3};
 use trundle_io::{Expected, MapImage, RosSequenceOptions};
 use trundle_runtime::{CameraMount, RobotConfig, level_from_first_camera};
-use trundle_slam::{Mode, RgbdSlam, SlamConfig};
+use trundle_slam::{Mode, RgbdSlam};
 
 /// A recorded sequence and how to track it.
 #[derive(Debug, Clone)]
@@ -49,6 +49,28 @@ pub struct SequenceRequest {
 }
 
 impl SequenceRequest {
+    /// A request for all frames of `options`, with the settings of `robot` if given, from an empty map.
+    #[must_use]
+    pub fn of_options(options: &SequenceOptions<'_>, robot: Option<RobotConfig>) -> Self {
+        Self {
+            path: options.path.to_owned(),
+            topics: options.topics.clone(),
+            camera: options.camera.map(str::to_owned),
+            depth_scale: options.depth_scale,
+            frames: None,
+            recover: options.recover,
+            first_camera: FirstCamera::default(),
+            map: None,
+            localize_only: false,
+            vocabulary: None,
+            seed: 1,
+            map_image: MapImage::Pgm,
+            record: RecordingContent::All,
+            robot: robot.map(Box::new),
+            visual_only: false,
+        }
+    }
+
     /// The images. Warnings are logged.
     ///
     /// # Errors
@@ -62,7 +84,10 @@ impl SequenceRequest {
             topics: self.topics.clone(),
         })?;
         if let Some(robot) = &self.robot {
+            // The input's mount, unless the robot file has one.
+            let mount = self.given_mount().unwrap_or(input.robot.mount);
             input.robot = RobotConfig::clone(robot);
+            input.robot.mount = mount;
             input.robot.camera = input.camera.model.camera;
         }
         find_readout(&mut input, self.frames)?;
@@ -121,7 +146,9 @@ impl SequenceRequest {
     /// A tracker with an empty map, or with the requested one.
     pub(super) fn slam(&self, input: &SequenceInput) -> Result<RgbdSlam, AppError> {
         // The error of a recording is taken over all of its frames.
-        let config = SlamConfig { seed: self.seed, kept_frames: usize::MAX, ..input.robot.slam.clone() };
+        let mut config = input.robot.slam.clone();
+        config.seed = self.seed;
+        config.kept_frames = usize::MAX;
         let camera = input.camera.model.camera;
         let vocabulary = vocabulary_or_builtin(self.vocabulary.as_deref())?;
         let Some(file) = &self.map else {

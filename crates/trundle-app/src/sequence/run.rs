@@ -1,5 +1,6 @@
 //! Tracking of a sequence, frame by frame.
 
+use super::depth_check::DepthCheck;
 use super::live_view::{SequenceFeed, Tracker};
 use super::odometry_prior::OdometryPrior;
 use super::recorder::SequenceRecorder;
@@ -13,9 +14,9 @@ use crate::sequence_input::SequenceInput;
 use crate::{AppError, StepProgress, TrackCounts, stop};
 use std::time::Instant;
 use trundle_core::{CameraMotion, Invalid, Pose3, RgbdImage, Stamp};
-use trundle_io::{DepthStatistics, FrameError, OutputFolder, Warnings};
+use trundle_io::{FrameError, OutputFolder, Warnings};
 use trundle_runtime::{LevelMap, Stage, StageTimes, base_below};
-use trundle_slam::{RgbdSlam, TrackReport};
+use trundle_slam::{Mode, RgbdSlam, TrackReport};
 
 /// The result of tracking a sequence.
 pub struct SequenceRun {
@@ -40,8 +41,7 @@ pub struct SequenceRun {
     pub seconds: f64,
     /// Whether the user ended it before the last frame.
     pub is_interrupted: bool,
-    /// The depth of all images read, and depth units per metre.
-    depth: (DepthStatistics, f64),
+    depth: DepthCheck,
     /// Calibration issues that were logged.
     logged_issues: usize,
     /// Reason why frames could not be read.
@@ -89,7 +89,7 @@ impl LeftOut {
 /// Tracks a sequence and records every frame into `recording.mcap` of `folder`; `watch` receives the progress.
 ///
 /// # Errors
-/// When a setting cannot be accepted or no frame can be read. If the disk is full, the recording ends and tracking continues.
+/// When a setting is invalid or no frame can be read. If the disk is full, the recording ends and tracking continues.
 pub fn track_sequence(
     request: &SequenceRequest,
     input: &SequenceInput,
@@ -146,6 +146,7 @@ pub fn track_sequence(
         let [source, _] = input.pose_sources();
         tracing::warn!("{source}: {}", odometry.why_no_motion(images));
     }
+    run.depth.compare(input, &run.slam);
     run.trajectory = run.final_trajectory(request, input)?;
     run.seconds = start.elapsed().as_secs_f64();
     Ok(run)
@@ -168,7 +169,7 @@ impl SequenceRun {
             times: StageTimes::default(),
             seconds: 0.0,
             is_interrupted: false,
-            depth: (DepthStatistics::default(), input.depth_scale()),
+            depth: DepthCheck::new(input.depth_scale()),
             logged_issues: 0,
             frame_problems: Warnings::default(),
             left_out: LeftOut::of(request, input),
@@ -200,15 +201,20 @@ impl SequenceRun {
     /// Reason why the run missed its goal or a limit, with the likely cause; `None` if it did not.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
-        let depth = self.depth.0.problem(self.depth.1);
         if !self.is_located() {
-            let cause = depth.unwrap_or_else(|| "too few features of the images match".to_owned());
+            let unmatched = match self.slam.mode() {
+                Mode::Mapping => "too few features of the images match",
+                Mode::Localisation => {
+                    "too few features of the images match the map: is it of this place, and are camera and depth_scale those of its images?"
+                }
+            };
+            let cause = self.depth.unusable().unwrap_or_else(|| unmatched.to_owned());
             return Some(format!("no frame after the first was located: {cause}"));
         }
         if self.tracked() == 1 && self.left_out.asked > 1 && !self.is_interrupted {
             return Some(self.left_out.failure(self.unreadable.first()));
         }
-        depth.or_else(|| self.trajectory.failure())
+        self.depth.problem().or_else(|| self.trajectory.failure())
     }
 
     /// Number of images for which the odometry gave the motion since the image before.
@@ -251,7 +257,7 @@ impl SequenceRun {
     }
 
     fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior<'_>) -> TrackReport {
-        self.depth.0.count(image.depth());
+        self.depth.count(image.depth());
         self.stamps = Some((self.stamps.map_or(image.stamp(), |(first, _)| first), image.stamp()));
         let since = self.last_image.as_ref().map(RgbdImage::stamp);
         let prior = since.and_then(|since| odometry.motion(since, image.stamp()));

@@ -20,6 +20,8 @@ pub struct SequenceTrajectory {
     pub frames: usize,
     /// Number of frames whose pose an image gives.
     pub located: usize,
+    /// Number of frames with a pose that odometry alone gives.
+    pub by_odometry: usize,
     /// Pose of the tracker's active map in the frame of the poses.
     pub level_from_visual: Pose3,
     /// Whether odometry places the frames that no image located.
@@ -34,6 +36,7 @@ impl SequenceTrajectory {
             poses: slam.trajectory(),
             frames: frames.len(),
             located: count_located(&frames),
+            by_odometry: 0,
             level_from_visual: Pose3::identity(),
             is_fused: false,
         }
@@ -58,16 +61,31 @@ impl SequenceTrajectory {
             poses = fuse_frames(&sequence);
         }
         let level_from_visual = map_pose(&frames, &poses);
+        let is_by_odometry = |(frame, pose): &(&FramePose, &Option<Pose3>)| {
+            pose.is_some() && frame.visual_from_camera.is_none()
+        };
+        let by_odometry = frames.iter().zip(&poses).filter(is_by_odometry).count();
         let poses =
             sequence.iter().zip(poses).filter_map(|(frame, pose)| Some((frame.stamp, pose?))).collect();
         let (frames, located) = (frames.len(), count_located(&frames));
-        Ok(Self { poses, frames, located, level_from_visual, is_fused: true })
+        Ok(Self { poses, frames, located, by_odometry, level_from_visual, is_fused: true })
+    }
+
+    /// The poses of the frames that an image located, each in the frame of its map.
+    pub(super) fn located(slam: &RgbdSlam) -> Vec<(Stamp, Pose3)> {
+        slam.frames().iter().filter_map(|frame| Some((frame.stamp, frame.visual_from_camera?))).collect()
     }
 
     /// Number of frames without a pose.
     #[must_use]
     pub fn missing(&self) -> usize {
         self.frames.saturating_sub(self.poses.len())
+    }
+
+    /// Number of frames with a pose that rests on their own image.
+    #[must_use]
+    pub fn by_images(&self) -> usize {
+        self.poses.len().saturating_sub(self.by_odometry)
     }
 
     /// Share of the frames without a pose \[1\].

@@ -30,7 +30,7 @@ impl SequenceOptions<'_> {
     }
 
     /// Name and value of the first topic that is given.
-    fn first_topic(&self) -> Option<(&'static str, &str)> {
+    pub(crate) fn first_topic(&self) -> Option<(&'static str, &str)> {
         let topics = &self.topics;
         let given = [
             ("--color-topic", &topics.color_topic),

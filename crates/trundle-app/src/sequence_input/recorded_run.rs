@@ -153,7 +153,7 @@ impl Survey {
             EncodedEvent::Rgbd(_) => self.images += 1,
             EncodedEvent::Scan(scan) => self.scans.push(scan),
             EncodedEvent::Odometry(odometry) => push_later(&mut self.odometry, odometry.stamp, odometry.pose),
-            EncodedEvent::Touch(_) | EncodedEvent::Cliff(_) | EncodedEvent::Body(_) => {}
+            _ => {}
         }
     }
 }

@@ -94,8 +94,9 @@ impl SurfaceRequest {
     }
 
     pub(super) fn config(&self) -> SurfaceConfig {
-        let default = SurfaceConfig::default();
-        SurfaceConfig { voxel: self.voxel.unwrap_or(default.voxel), ..default }
+        let mut config = SurfaceConfig::default();
+        config.voxel = self.voxel.unwrap_or(config.voxel);
+        config
     }
 
     /// Side of an octree's voxel, m.

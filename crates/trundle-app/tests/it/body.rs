@@ -80,19 +80,33 @@ impl RobotBody for StillBody {
     }
 }
 
-/// A still body whose user ends the run after a number of inputs.
-pub struct InterruptedBody {
+/// A still body with a function that is called before each input, with its number from 1. What the function returns replaces the input.
+pub struct HookedBody<F> {
     /// The body.
     pub body: StillBody,
-    /// Inputs until the user ends the run.
-    pub inputs: usize,
+    hook: F,
+    inputs: usize,
 }
 
-impl EncodedBody for InterruptedBody {
+impl<F: FnMut(usize) -> Option<RunInput>> HookedBody<F> {
+    /// The body with its function.
+    pub fn new(body: StillBody, hook: F) -> Self {
+        Self { body, hook, inputs: 0 }
+    }
+}
+
+/// A still body whose user ends the run after `inputs` inputs.
+pub fn interrupted(inputs: usize) -> HookedBody<impl FnMut(usize) -> Option<RunInput>> {
+    HookedBody::new(StillBody::new(1000), move |input| (input > inputs).then_some(RunInput::Interrupted))
+}
+
+impl<F: FnMut(usize) -> Option<RunInput>> EncodedBody for HookedBody<F> {
     fn next_input(&mut self) -> Result<Option<RunInput>, AppError> {
-        let Some(left) = self.inputs.checked_sub(1) else { return Ok(Some(RunInput::Interrupted)) };
-        self.inputs = left;
-        self.body.next_input()
+        self.inputs += 1;
+        match (self.hook)(self.inputs) {
+            None => self.body.next_input(),
+            input => Ok(input),
+        }
     }
 
     fn send_command(&mut self, twist: Twist2) -> Result<(), AppError> {

@@ -12,7 +12,7 @@ use trundle_core::{DepthImage, DifferentialDrive, PinholeCamera, RgbdImage, Robo
 use trundle_io::{EncodedEvent, OutputFolder, Recorder, RecordingReader};
 use trundle_runtime::settings::RobotFile;
 use trundle_runtime::{CameraMount, Mission, RobotConfig, Task};
-use trundle_sim::{CommandScript, KobukiConfig, Scene, SimConfig, Simulator};
+use trundle_sim::{CommandScript, Scene, SimConfig, Simulator};
 
 /// True pose of the camera's mount.
 const MOUNT: CameraMount =
@@ -76,12 +76,11 @@ fn record_with(
 
 /// The simulated robot with another mount, other wheels and a small image.
 fn robot() -> SimConfig {
-    SimConfig {
-        camera: PinholeCamera::from_field_of_view((320, 264), (1.232, 1.047)).unwrap(),
-        base_from_camera: MOUNT.base_from_camera(),
-        kobuki: KobukiConfig { drive: DRIVE, ..KobukiConfig::default() },
-        ..SimConfig::default()
-    }
+    let mut config = SimConfig::default();
+    config.camera = PinholeCamera::from_field_of_view((320, 264), (1.232, 1.047)).unwrap();
+    config.base_from_camera = MOUNT.base_from_camera();
+    config.kobuki.drive = DRIVE;
+    config
 }
 
 /// An image whose stamp is late by the delay.

@@ -18,13 +18,10 @@ fn sender(cells: usize) -> OccupancyGrid {
 }
 
 fn passes_by_plan(footprint: &Footprint, grid: &OccupancyGrid, start: Pose2, goal: Pose2) -> bool {
-    let mut planner = Planner::new(
-        PlannerConfig { beyond: 0.0, ..PlannerConfig::default() },
-        footprint,
-        DriveLimits::KOBUKI,
-        DifferentialDrive::KOBUKI,
-    )
-    .unwrap();
+    let mut config = PlannerConfig::default();
+    config.beyond = 0.0;
+    let mut planner =
+        Planner::new(config, footprint, DriveLimits::KOBUKI, DifferentialDrive::KOBUKI).unwrap();
     matches!(planner.plan(grid, start, Twist2::ZERO, goal), Plan::Found(_))
 }
 

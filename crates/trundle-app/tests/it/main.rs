@@ -1,4 +1,4 @@
-//! Runs on a body without a camera: session, recorder, replayer, checkpoint writer, report.
+//! Runs: session, recorder, replayer, checkpoint writer, report. The body of these runs has no camera unless a test says so.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "workers of tests; figures of the results")]
 
 mod body;
@@ -6,8 +6,11 @@ mod calibrate;
 mod calibrate_camera;
 mod checkpoint_writer;
 mod contact;
+mod convert;
 mod files;
+mod jitter;
 mod operator;
+mod other_driver;
 mod recorded_sequence;
 mod recording;
 mod report;

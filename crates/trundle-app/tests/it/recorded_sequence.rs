@@ -20,7 +20,9 @@ fn recording(scratch: &Path) -> PathBuf {
 }
 
 fn options(path: &Path, recover: bool) -> SequenceOptions<'_> {
-    SequenceOptions { recover, ..SequenceOptions::new(path) }
+    let mut options = SequenceOptions::new(path);
+    options.recover = recover;
+    options
 }
 
 fn request(path: &Path) -> SequenceRequest {

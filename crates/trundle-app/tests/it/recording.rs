@@ -1,10 +1,10 @@
 //! Recorder and replayer: a replay feeds the robot the same inputs as the run.
 
-use crate::body::{InterruptedBody, StillBody, run_into, setup};
+use crate::body::{HookedBody, StillBody, interrupted, run_into, setup};
 use std::path::{Path, PathBuf};
 use trundle_app::{
-    EncodedBody, FinishedRun, FreeSpace, Progress, RecordingContent, RunLog, RunRecorder, RunReplayer,
-    run_on_body,
+    EncodedBody, FinishedRun, FreeSpace, Progress, RecordingContent, RecordingState, RecordingSwitch, RunLog,
+    RunRecorder, RunReplayer, run_on_body,
 };
 use trundle_core::Stamp;
 use trundle_io::{OutputFolder, RecordingReader};
@@ -41,7 +41,7 @@ fn a_replay_commands_the_same_and_records_the_same_bytes() {
 #[test]
 fn a_replay_ends_where_the_user_ended_the_run() {
     let scratch = tempfile::tempdir().unwrap();
-    let mut body = InterruptedBody { body: StillBody::new(1000), inputs: 100 };
+    let mut body = interrupted(100);
     let (live, recording) = record(&mut body, scratch.path());
     let (again, _) = replay(&recording, scratch.path());
     assert_eq!(live.log.state, again.log.state);
@@ -156,4 +156,77 @@ fn a_cut_recording_is_replayed_to_the_cut() {
         let byte = bytes.len() * part / 10;
         assert!(report.starts_with(&format!("the recording was cut at byte {byte}; ")), "{report}");
     }
+}
+
+/// A run of 100 inputs into the folder `live`, with turns of the switch; the run, its switch and its folder.
+fn switched(
+    content: RecordingContent,
+    turns: &[(usize, bool)],
+    space: Option<FreeSpace>,
+    scratch: &Path,
+) -> (FinishedRun, RecordingSwitch, PathBuf) {
+    let folder = OutputFolder::create(&scratch.join("live")).unwrap();
+    let mut setup = setup();
+    setup.recording = content;
+    let recorder = RunRecorder::of_content(content, &folder).unwrap();
+    let recorder = match space {
+        Some(space) => recorder.watching(space),
+        None => recorder,
+    };
+    let switch = recorder.switch().clone();
+    let mut body = HookedBody::new(StillBody::new(100), |number| {
+        turns.iter().filter(|(input, _)| *input == number).for_each(|(_, on)| switch.turn(*on));
+        None
+    });
+    let run = run_on_body(&setup, &mut body, recorder, RunLog::default(), Progress::hidden()).unwrap();
+    (run, switch, folder.commit().unwrap())
+}
+
+/// Number of events of a recording.
+fn events(recording: &Path) -> usize {
+    RecordingReader::open(recording).unwrap().events().map(Result::unwrap).count()
+}
+
+#[test]
+fn each_switching_on_begins_a_file_and_the_first_is_replayed_to_its_end() {
+    let scratch = tempfile::tempdir().unwrap();
+    let turns = [(40, false), (60, true), (70, false), (90, true)];
+    let (run, switch, folder) = switched(RecordingContent::All, &turns, None, scratch.path());
+    assert!(run.recording.error.is_none());
+    let state = switch.state();
+    assert_eq!((state.file.as_deref(), state.reason), (Some("recording-3.mcap"), None));
+    let [first, second, third] =
+        ["recording.mcap", "recording-2.mcap", "recording-3.mcap"].map(|name| folder.join(name));
+    assert_eq!([&first, &second, &third].map(|file| events(file)).iter().sum::<usize>(), 39 + 10 + 211);
+    let (again, _) = replay(&first, scratch.path());
+    assert_eq!(again.log.twists[..], run.log.twists[..again.log.twists.len()]);
+    assert!(!again.log.twists.is_empty() && again.log.twists.len() < run.log.twists.len());
+    let refusal = RunReplayer::open(&second).err().unwrap().to_string();
+    assert!(
+        refusal.contains("recording-2.mcap") && refusal.contains("after the start of its run"),
+        "{refusal}"
+    );
+    let messages: Vec<_> = RecordingReader::open(&second).unwrap().map(Result::unwrap).collect();
+    assert!(messages.len() > events(&second) + 2, "it has poses and twists too");
+}
+
+#[test]
+fn a_run_without_a_recording_records_everything_once_it_is_switched_on() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (_, switch, folder) = switched(RecordingContent::None, &[(50, true)], None, scratch.path());
+    assert!(!folder.join("recording.mcap").exists());
+    assert_eq!(events(&folder.join("recording-2.mcap")), 251);
+    assert!(switch.state().free_bytes.is_some());
+}
+
+#[test]
+fn a_recording_is_not_switched_on_with_too_little_space() {
+    let scratch = tempfile::tempdir().unwrap();
+    let short = FreeSpace::new(|| Some(3_000_000), 4_000_000);
+    let (run, switch, folder) = switched(RecordingContent::None, &[(50, true)], Some(short), scratch.path());
+    assert!(!run.log.twists.is_empty());
+    let RecordingState { is_on, file, reason, free_bytes, .. } = switch.state();
+    assert_eq!((is_on, file, free_bytes), (false, None, Some(3_000_000)));
+    assert_eq!(reason.unwrap(), "3 MB are free on the disk, expected 4 MB or more");
+    assert!(!folder.join("recording-2.mcap").exists());
 }

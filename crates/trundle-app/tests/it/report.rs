@@ -45,6 +45,7 @@ fn good() -> RunNumbers {
         end: RunEnd {
             state: DriveState::Arrived,
             is_operated: false,
+            is_of_sensors: false,
             out_of_time: None,
             tasks: TaskCounts { done: 1, left: 0 },
         },
@@ -72,6 +73,7 @@ fn an_operated_run_is_a_success_only_when_something_was_done_and_nothing_is_open
         end: RunEnd {
             state: interrupted.clone(),
             is_operated: true,
+            is_of_sensors: false,
             out_of_time: None,
             tasks: TaskCounts { done, left },
         },
@@ -172,7 +174,12 @@ fn the_folder_of_a_run_is_whole_and_names_the_kinds_of_its_reason() {
     for name in files.into_iter().chain(["timing.html", "summary.json", "recording.mcap"]) {
         assert!(output.folder.join(name).is_file(), "{name}");
     }
-    let text = std::fs::read_to_string(output.folder.join("summary.json")).unwrap();
+    let text = |name: &str| std::fs::read_to_string(output.folder.join(name)).unwrap();
+    let (report, timing) = (text("report.html"), text("timing.html"));
+    assert!(report.contains("<a href=\"./timing.html\">") && timing.contains("<a href=\"./report.html\">"));
+    assert!(report.contains("<summary><h3>Changes of state: ") && !timing.contains("<summary>"));
+    assert!(report.contains("<td>stopped</td><td>task 1 (go to "), "{report}");
+    let text = text("summary.json");
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(summary["success"], false);
     assert_eq!(summary["reason_kinds"], serde_json::json!(["tasks_failed", "repeated_contact"]));

@@ -25,14 +25,15 @@ fn report(seconds: f64, x: f64, state: DriveState) -> StepReport {
 }
 
 #[test]
-fn a_change_of_state_is_logged_once_with_its_first_reason() {
+fn each_change_of_the_state_or_of_its_kind_of_reason_is_logged_once() {
     let mut log = RunLog::default();
     let waiting = |reason| DriveState::Waiting { reason };
     let states = [
         DriveState::Driving,
         DriveState::Driving,
+        waiting(Reason::PoseUncertain { sigma: 0.4 }),
+        waiting(Reason::PoseUncertain { sigma: 0.5 }),
         waiting(Reason::MovingObstacle),
-        waiting(Reason::StoppingToReplan),
         DriveState::Driving,
     ];
     for (i, state) in states.into_iter().enumerate() {
@@ -40,10 +41,16 @@ fn a_change_of_state_is_logged_once_with_its_first_reason() {
         log.on_report(at(now), &report(now, 0.1 * i as f64, state));
     }
     let changes: Vec<_> = log.changes.iter().map(|change| (change.at, change.state.to_string())).collect();
-    let expected = [(0.0, "driving"), (2.0, "waiting: a moving obstacle blocks the path"), (4.0, "driving")];
+    let uncertain = DriveState::Waiting { reason: Reason::PoseUncertain { sigma: 0.4 } }.to_string();
+    let expected = [
+        (0.0, "driving"),
+        (2.0, &uncertain),
+        (4.0, "waiting: a moving obstacle blocks the path"),
+        (5.0, "driving"),
+    ];
     assert_eq!(changes, expected.map(|(at, text)| (at, text.to_owned())));
     assert_eq!(log.changes[1].pose.x, 0.2);
-    assert_eq!((log.elapsed(), log.state.clone()), (4.0, DriveState::Driving));
+    assert_eq!((log.elapsed(), log.state.clone()), (5.0, DriveState::Driving));
 }
 
 #[test]

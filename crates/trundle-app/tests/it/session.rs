@@ -1,6 +1,6 @@
 //! The session: the conditions that end a run, and the commands that the body receives.
 
-use crate::body::{GOAL, InterruptedBody, StillBody, run, setup};
+use crate::body::{GOAL, StillBody, interrupted, run, setup};
 use trundle_app::AFTER_ARRIVAL_S;
 use trundle_core::Twist2;
 use trundle_runtime::{DriveState, Mission, Reason, ReasonKind, Task, TaskEnd};
@@ -37,7 +37,7 @@ fn a_mission_that_fails_ends_the_run_half_a_second_later_with_a_typed_reason() {
 
 #[test]
 fn the_user_ends_a_run_and_the_base_gets_a_stop() {
-    let mut body = InterruptedBody { body: StillBody::new(1000), inputs: 90 };
+    let mut body = interrupted(90);
     let run = run(&setup(), &mut body).unwrap();
     assert_eq!(run.log.state, DriveState::Stopped { reason: Reason::Interrupted });
     assert_eq!(body.body.commands.len(), 30 + 1);

@@ -8,6 +8,7 @@ use trundle_core::{Invalid, require_in};
 /// Settings of trajectory following and of the final approach.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct FollowerConfig {
     /// The tracking law.
     pub tracking: PathTrackingConfig,

@@ -2,7 +2,7 @@
 
 use crate::path_tracking::tracking_law::Gains;
 use serde::{Deserialize, Serialize};
-use trundle_core::{Invalid, Twist2, require_in};
+use trundle_core::{Hypotenuse, Invalid, Twist2, require_in};
 
 /// Gains of the tracking law.
 ///
@@ -12,6 +12,7 @@ use trundle_core::{Invalid, Twist2, require_in};
 /// decays over 1 / sqrt(k_cross) metres of path at every speed \[DeLuca01\].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct PathTrackingConfig {
     /// Gain of the cross-track error, 1/m^2, 0.01 to 100. An error falls to 1/e over 1 / sqrt(`k_cross`) metres of path. A larger gain
     /// corrects sooner, with more turning. Default 16 (ours, measured in `tests/it/path_tracking.rs`); \[Li18\] prints 1.
@@ -46,7 +47,7 @@ impl PathTrackingConfig {
 
     /// The gains about a reference that moves with `reference`.
     pub(super) fn gains(&self, reference: Twist2) -> Gains {
-        let frequency = reference.omega.hypot(self.k_cross.sqrt() * reference.v);
+        let frequency = reference.omega.hypotenuse(self.k_cross.sqrt() * reference.v);
         let k = (2.0 * self.damping * frequency).clamp(self.gain_min, self.gain_max);
         Gains { k1: k, k2: k, k_cross: self.k_cross }
     }

@@ -1,6 +1,6 @@
 //! The error of a pose in the robot's frame.
 
-use trundle_core::{Pose2, difference_of_angles};
+use trundle_core::{Hypotenuse, Pose2, difference_of_angles};
 
 /// The reference in the robot's frame: (e_x, e_y, e_theta) of A6.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -27,7 +27,7 @@ impl TrackingError {
 
     /// The distance, m.
     pub fn distance(&self) -> f64 {
-        self.along.hypot(self.cross)
+        self.along.hypotenuse(self.cross)
     }
 }
 

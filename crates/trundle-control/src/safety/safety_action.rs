@@ -50,6 +50,7 @@ pub enum SafetyAction {
 
 /// Reason why the robot drives slower than commanded.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum SlowReason {
     /// An obstacle ahead, still far enough.
     ObstacleAhead {
@@ -85,6 +86,7 @@ pub enum SlowReason {
 
 /// Reason why the robot was stopped.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum StopReason {
     /// An obstacle nearer than the braking distance.
     ObstacleAhead {

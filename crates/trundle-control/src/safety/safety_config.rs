@@ -6,6 +6,7 @@ use trundle_core::{Invalid, Twist2, require_in};
 /// When to slow down and when to stop.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SafetyConfig {
     /// Deceleration of the base in a stop, m/s^2, 0.05 to 20. A larger value allows faster driving near obstacles; above the base's own the
     /// robot would stop too late. Default 0.5: [`DriveLimits::KOBUKI`](trundle_core::DriveLimits::KOBUKI); the base can do more.

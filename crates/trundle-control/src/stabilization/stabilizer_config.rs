@@ -9,6 +9,7 @@ use trundle_core::{Invalid, require_in};
 /// with a response time of 0.1 s can follow.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct StabilizerConfig {
     /// Speed per distance from the goal, 1/s, 0.05 to 10. A larger gain approaches faster. Default 1 (ours).
     pub k_rho: f64,

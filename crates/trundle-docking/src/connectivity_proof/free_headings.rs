@@ -72,7 +72,7 @@ impl<'s, 'a> FreeHeadings<'s, 'a> {
         let (first, many) = self.gaps_of(cell);
         (first..first + many)
             .map(|gap| Node { cell, gap })
-            .find(|&node| meets(&self.gap(node), pose.theta, 0.0))
+            .find(|&node| overlaps(&self.gap(node), pose.theta, 0.0))
     }
 
     /// The node of a pose. If its own cell's centre is not free: the nearest surrounding cell with a free centre at its heading, or at a
@@ -117,7 +117,7 @@ impl<'s, 'a> FreeHeadings<'s, 'a> {
             let nodes = (first..first + many).map(|gap| Node { cell, gap });
             found.extend(nodes.filter(|&other| {
                 let gap = self.gap(other);
-                meets(&mine, gap.start, gap.length)
+                overlaps(&mine, gap.start, gap.length)
             }));
         }
     }
@@ -151,6 +151,6 @@ impl<'s, 'a> FreeHeadings<'s, 'a> {
 }
 
 /// Whether headings from `start` over `length` share one with `gap`.
-fn meets(gap: &HeadingArc, start: f64, length: f64) -> bool {
+fn overlaps(gap: &HeadingArc, start: f64, length: f64) -> bool {
     (start - gap.start).rem_euclid(TAU) <= gap.length || (gap.start - start).rem_euclid(TAU) <= length
 }

@@ -17,7 +17,7 @@ use trundle_core::wrap_angle;
 const FINEST_LEVEL: u8 = 11;
 /// Counted cost of a box without its contact queries, in units of [`ContactSpace::work`]. Source: ours.
 const BOX_COST: u64 = 100;
-/// Level from which the centres of the squares are tried as a manoeuvre. Source: ours.
+/// Smallest level at which the centres of the squares are tried as a manoeuvre. Source: ours.
 const FIRST_TRIED_LEVEL: u8 = 6;
 
 /// Result of branch and bound.

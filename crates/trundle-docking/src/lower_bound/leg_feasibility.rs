@@ -4,7 +4,7 @@ use crate::contact_space::ContactSpace;
 use crate::lower_bound::boxes::{PositionBox, Region, Square};
 use crate::lower_bound::ranges::LegRange;
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 use trundle_collision::HeadingArc;
 use trundle_core::Pose2;
 
@@ -34,7 +34,8 @@ impl<'a> ShrunkHulls<'a> {
     fn space(&mut self, depth: f64) -> Option<&mut ContactSpace<'a>> {
         let step = (2.0 * (depth / MIN_SHRINK_M).log2()).ceil().max(0.0) as usize;
         let whole = &self.whole;
-        let depth = MIN_SHRINK_M * 2_f64.powf(step as f64 / 2.0);
+        let half_step = if step.is_multiple_of(2) { 1.0 } else { SQRT_2 };
+        let depth = MIN_SHRINK_M * 2_f64.powi((step / 2).min(SHRINK_STEPS) as i32) * half_step;
         let make = || whole.hull().shrunk(depth).map(|hull| whole.with_hull(hull));
         self.spaces.get_mut(step)?.get_or_insert_with(make).as_mut()
     }

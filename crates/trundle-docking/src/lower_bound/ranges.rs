@@ -3,7 +3,7 @@
 use crate::lower_bound::boxes::PositionBox;
 use std::f64::consts::{PI, TAU};
 use trundle_collision::HeadingArc;
-use trundle_core::wrap_angle;
+use trundle_core::{Hypotenuse, wrap_angle};
 
 /// Range of the legs between two boxes.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +21,7 @@ impl LegRange {
     pub fn between(from: &PositionBox, to: &PositionBox) -> Self {
         let (d, half) = (to.center - from.center, from.half + to.half);
         let beyond = |x: f64| (x.abs() - half).max(0.0);
-        let min = beyond(d.x).hypot(beyond(d.y));
+        let min = beyond(d.x).hypotenuse(beyond(d.y));
         let direction = d.y.atan2(d.x);
         if min == 0.0 {
             return Self { min, direction, spread: if half == 0.0 && d.norm() > 0.0 { 0.0 } else { PI } };

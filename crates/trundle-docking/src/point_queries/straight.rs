@@ -42,6 +42,6 @@ impl PointQuery for StraightQuery<'_> {
     }
 
     fn visit(&mut self, p: Vector2, number: u32) {
-        self.free.meet(self.hull, &self.seen(p), || (number, p));
+        self.free.limit_by(self.hull, &self.seen(p), || (number, p));
     }
 }

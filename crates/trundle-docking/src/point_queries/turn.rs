@@ -41,6 +41,6 @@ impl PointQuery for TurnQuery<'_> {
 
     fn visit(&mut self, p: Vector2, number: u32) {
         let segment = Segment::point(p);
-        self.free.meet(self.hull, &segment, number, &self.pose, self.angles, self.arcs);
+        self.free.limit_by(self.hull, &segment, number, &self.pose, self.angles, self.arcs);
     }
 }

@@ -7,6 +7,7 @@ use trundle_core::{Invalid, require_in};
 /// Parameters of closed-loop positioning.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct PositionerConfig {
     /// Time at rest before every decision, in which the pose is averaged, s, 0.02 to 10. Default 0.4: with the time to come to rest, the
     /// planner's `switch_time`.
@@ -32,7 +33,7 @@ pub struct PositionerConfig {
     /// error of 2 mm.
     pub overlap: f64,
     /// Number of standard deviations of the pose that the margin covers, 0 to 10. The margin ([`crate::margin_of`]) is at least the
-    /// planner's and at most `max_margin`. Default 3.
+    /// planner's and at most `max_margin`. Default 3 (ours): 99.7 % of a normal distribution.
     pub sigmas: f64,
     /// Largest margin for an uncertain pose, m, 0 to 0.5. Default 0.05 (ours).
     pub max_margin: f64,

@@ -22,6 +22,7 @@ pub struct PositionerInput<'a> {
 
 /// Reason for a command.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum PositionerReason {
     /// The robot is at rest, and its pose is averaged.
     Measuring,

@@ -9,8 +9,9 @@ use trundle_docking::{
     Certificate, DockingConfig, DockingPlan, DockingPlanner, Method, Obstacle, SearchLimit,
 };
 
-fn planner(config: DockingConfig) -> DockingPlanner {
-    DockingPlanner::new(DockingConfig { margin: 0.0, ..config }).unwrap()
+fn planner(mut config: DockingConfig) -> DockingPlanner {
+    config.margin = 0.0;
+    DockingPlanner::new(config).unwrap()
 }
 
 fn problems(seed: u64, count: usize) -> Vec<Problem> {
@@ -28,8 +29,11 @@ fn plan(planner: &DockingPlanner, problem: &Problem) -> DockingPlan {
 
 #[test]
 fn more_boxes_never_lower_the_bound() {
-    let planners = [0, 30, 300, 2000]
-        .map(|bound_boxes| planner(DockingConfig { bound_boxes, ..DockingConfig::default() }));
+    let planners = [0, 30, 300, 2000].map(|bound_boxes| {
+        let mut config = DockingConfig::default();
+        config.bound_boxes = bound_boxes;
+        planner(config)
+    });
     let mut raised = 0;
     for problem in problems(91, 12) {
         let scene = problem.scene().unwrap();
@@ -44,7 +48,9 @@ fn more_boxes_never_lower_the_bound() {
 
 #[test]
 fn a_bound_is_never_above_the_known_time_and_rises_with_it() {
-    let planner = planner(DockingConfig { bound_boxes: 200, ..DockingConfig::default() });
+    let mut config = DockingConfig::default();
+    config.bound_boxes = 200;
+    let planner = planner(config);
     for problem in problems(92, 12) {
         let scene = problem.scene().unwrap();
         let bound = |known: f64| {
@@ -74,7 +80,9 @@ fn without_any_grant_a_plan_waits_and_does_no_work() {
 fn any_division_of_the_work_gives_the_same_plan_for_the_same_work() {
     let mut rng = ChaCha8Rng::seed_from_u64(94);
     for method in [Method::Optimal, Method::Hong24] {
-        let planner = planner(DockingConfig { method, ..DockingConfig::default() });
+        let mut config = DockingConfig::default();
+        config.method = method;
+        let planner = planner(config);
         for problem in problems(95, 6) {
             let scene = problem.scene().unwrap();
             let begin =
@@ -104,7 +112,8 @@ fn a_job_keeps_its_own_scene() {
 
 #[test]
 fn the_least_work_ends_a_hard_search_and_is_named() {
-    let config = DockingConfig { max_work: 100_000, ..DockingConfig::default() };
+    let mut config = DockingConfig::default();
+    config.max_work = 100_000;
     for problem in hard().iter().take(2) {
         let DockingPlan::Impossible(none) = plan(&planner(config.clone()), problem) else {
             panic!("{} is found with no work", problem.name)
@@ -116,7 +125,8 @@ fn the_least_work_ends_a_hard_search_and_is_named() {
 
 #[test]
 fn a_search_without_nodes_is_ended_by_them_and_names_them() {
-    let config = DockingConfig { search_nodes: 0, ..DockingConfig::default() };
+    let mut config = DockingConfig::default();
+    config.search_nodes = 0;
     let ended =
         hard().iter().take(2).map(|problem| plan(&planner(config.clone()), problem)).collect::<Vec<_>>();
     for plan in ended {
@@ -129,7 +139,11 @@ fn a_search_without_nodes_is_ended_by_them_and_names_them() {
 fn a_plan_found_with_less_effort_is_found_with_more_and_not_slower() {
     let efforts = [(0, 100_000), (500, 2_000_000), (2500, 50_000_000)];
     let planners = efforts.map(|(search_nodes, max_work)| {
-        planner(DockingConfig { search_nodes, max_work, bound_boxes: 0, ..DockingConfig::default() })
+        let mut config = DockingConfig::default();
+        config.search_nodes = search_nodes;
+        config.max_work = max_work;
+        config.bound_boxes = 0;
+        planner(config)
     });
     for problem in problems(96, 20) {
         let times = planners.each_ref().map(|planner| match plan(planner, &problem) {
@@ -150,7 +164,9 @@ fn a_proof_stays_a_proof_with_more_work() {
     ];
     let scene = scene(&closed.map(|(a, b)| wall(a, b)));
     for max_work in [1_000_000, 10_000_000, 50_000_000] {
-        let planner = planner(DockingConfig { max_work, ..DockingConfig::default() });
+        let mut config = DockingConfig::default();
+        config.max_work = max_work;
+        let planner = planner(config);
         let plan = planner.plan(&robot(), &scene, Pose2::IDENTITY, Pose2::new(0.0, 1.5, 0.0)).unwrap();
         let DockingPlan::Impossible(none) = plan else { panic!("{plan:?}") };
         assert_eq!(none.certificate, Certificate::Never, "{max_work}");
@@ -164,7 +180,8 @@ fn the_setting_that_ends_a_plan_among_many_points_is_their_own() {
         Obstacle::Point(at(0.45 * cos, 0.45 * sin))
     };
     let scene = scene(&(0..629).map(ring).collect::<Vec<_>>());
-    let config = DockingConfig { points_work: 100_000, ..DockingConfig::default() };
+    let mut config = DockingConfig::default();
+    config.points_work = 100_000;
     let goal = Pose2::new(0.05, 0.0, 1.5);
     let plan = planner(config).plan(&robot(), &scene, Pose2::IDENTITY, goal).unwrap();
     if let DockingPlan::Impossible(none) = plan {

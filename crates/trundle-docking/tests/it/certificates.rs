@@ -73,8 +73,10 @@ impl Lattice<'_> {
 #[test]
 fn a_goal_proven_impossible_is_not_reached_by_brute_force() {
     let mut rng = ChaCha8Rng::seed_from_u64(33);
-    let config =
-        DockingConfig { reach: 0.2, max_work: 2_000_000, bound_boxes: 0, ..DockingConfig::default() };
+    let mut config = DockingConfig::default();
+    config.reach = 0.2;
+    config.max_work = 2_000_000;
+    config.bound_boxes = 0;
     let planner = DockingPlanner::new(config).unwrap();
     let (mut proofs, mut found, mut reached) = (0, 0, 0);
     while proofs < PROOFS {

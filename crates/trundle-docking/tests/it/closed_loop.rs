@@ -14,7 +14,9 @@ use trundle_docking::{
 #[test]
 fn it_reaches_the_goal_pose_under_noise() {
     let mut rng = ChaCha8Rng::seed_from_u64(77);
-    let planner = DockingPlanner::new(DockingConfig { bound_boxes: 0, ..DockingConfig::default() }).unwrap();
+    let mut config = DockingConfig::default();
+    config.bound_boxes = 0;
+    let planner = DockingPlanner::new(config).unwrap();
     let (mut count, mut good, mut contacts, mut motions) = (0_u64, 0, 0, 0);
     while count < 40 {
         let problem = generate("closed", &mut rng);
@@ -55,7 +57,8 @@ fn stops_and_starts_again(method: Method) {
     let mut blocked = walls.clone();
     blocked.push(Obstacle::Polygon(vec![at(0.48, -0.2), at(0.56, -0.2), at(0.56, 0.2), at(0.48, 0.2)]));
     let (open, blocked) = (ObstacleScene::new(&walls).unwrap(), ObstacleScene::new(&blocked).unwrap());
-    let docking = DockingConfig { method, ..DockingConfig::default() };
+    let mut docking = DockingConfig::default();
+    docking.method = method;
     let mut positioner =
         Positioner::new(docking, PositionerConfig::default(), footprint.clone(), goal).unwrap();
     let mut world = World::new(Pose2::IDENTITY, 5);
@@ -115,8 +118,10 @@ fn begins<'s>(
     method: Method,
     at: impl Fn(usize) -> (Pose2, &'s ObstacleScene),
 ) -> (Vec<PositionerReason>, Option<(usize, Manoeuvre)>) {
-    let docking = DockingConfig { method, ..DockingConfig::default() };
-    let config = PositionerConfig { step_work: 10_000, ..PositionerConfig::default() };
+    let mut docking = DockingConfig::default();
+    docking.method = method;
+    let mut config = PositionerConfig::default();
+    config.step_work = 10_000;
     let goal = Pose2::new(0.1, 0.9, 0.2);
     let mut positioner = Positioner::new(docking, config, Footprint::KOBUKI, goal).unwrap();
     let (mut reasons, mut began) = (Vec::new(), None);
@@ -189,7 +194,8 @@ fn a_plan_through_what_has_come_meanwhile_is_not_carried_out() {
 /// The paper's four scenarios in closed loop with its own method: the end is within its thresholds, without contact.
 #[test]
 fn the_method_of_hong24_reaches_its_goals_under_noise() {
-    let docking = DockingConfig { method: Method::Hong24, ..DockingConfig::default() };
+    let mut docking = DockingConfig::default();
+    docking.method = Method::Hong24;
     for scenario in Scenario::ALL {
         let run = run(&scenario.problem(), &docking, 3);
         assert!(run.settled && !run.contact, "{scenario:?}: settled {} contact {}", run.settled, run.contact);

@@ -38,7 +38,9 @@ fn bad_input_is_refused_with_a_reason() {
         (there, nowhere, "goal is (NaN, 0, 0), expected finite numbers"),
     ];
     for method in [Method::Optimal, Method::Hong24] {
-        let planner = DockingPlanner::new(DockingConfig { method, ..DockingConfig::default() }).unwrap();
+        let mut config = DockingConfig::default();
+        config.method = method;
+        let planner = DockingPlanner::new(config).unwrap();
         for (start, goal, expected) in cases {
             let message = planner.plan(&robot(), &wall, start, goal).unwrap_err().to_string();
             assert!(message.contains(expected), "{message}");
@@ -173,7 +175,9 @@ fn manoeuvres_are_free_and_end_exactly() {
 #[test]
 fn hardly_any_room_takes_many_motions_and_is_solved() {
     let problems = parse(include_str!("../data/hard.txt")).unwrap();
-    let planner = DockingPlanner::new(DockingConfig { margin: 0.0, ..DockingConfig::default() }).unwrap();
+    let mut config = DockingConfig::default();
+    config.margin = 0.0;
+    let planner = DockingPlanner::new(config).unwrap();
     for problem in problems.iter().filter(|p| p.name == "1-297" || p.name == "1-1385") {
         let scene = problem.scene().unwrap();
         let plan = planner.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();

@@ -15,7 +15,9 @@ fn problems(seed: u64) -> Vec<Problem> {
 }
 
 fn plan(problem: &Problem) -> DockingPlan {
-    let config = DockingConfig { margin: 0.0, bound_boxes: 2000, ..DockingConfig::default() };
+    let mut config = DockingConfig::default();
+    config.margin = 0.0;
+    config.bound_boxes = 2000;
     let planner = DockingPlanner::new(config).unwrap();
     planner.plan(&problem.footprint, &problem.scene().unwrap(), problem.start, problem.goal).unwrap()
 }
@@ -137,7 +139,9 @@ fn every_pose_of_a_manoeuvre_is_free_and_its_ends_are_exact() {
 #[test]
 fn the_bound_is_at_most_the_time_and_the_known_time() {
     let problems = problems(25);
-    let planner = DockingPlanner::new(DockingConfig { margin: 0.0, ..DockingConfig::default() }).unwrap();
+    let mut config = DockingConfig::default();
+    config.margin = 0.0;
+    let planner = DockingPlanner::new(config).unwrap();
     for (problem, solution) in solved(&problems) {
         let time = solution.manoeuvre.duration();
         assert!(solution.bound <= time + 1e-9, "{}: {} above {time}", problem.name, solution.bound);

@@ -16,7 +16,9 @@ const BEYOND: u64 = 60_000;
 /// The same plan for any division, with no part much above its grant.
 #[test]
 fn a_plan_in_parts_is_the_plan_at_once() {
-    let planner = DockingPlanner::new(DockingConfig { margin: 0.0, ..DockingConfig::default() }).unwrap();
+    let mut config = DockingConfig::default();
+    config.margin = 0.0;
+    let planner = DockingPlanner::new(config).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(12);
     let mut problems: Vec<_> = (0..25).map(|i| generate(format!("{i}"), &mut rng)).collect();
     problems.extend(parse(include_str!("../data/hard.txt")).unwrap().into_iter().take(1));
@@ -88,8 +90,10 @@ fn a_whole_plan_has_a_limit_and_names_it() {
     let scene = hard.scene().unwrap();
     for method in [Method::Optimal, Method::Hong24] {
         let plan_work = 300_000;
-        let planner =
-            DockingPlanner::new(DockingConfig { method, plan_work, ..DockingConfig::default() }).unwrap();
+        let mut config = DockingConfig::default();
+        config.method = method;
+        config.plan_work = plan_work;
+        let planner = DockingPlanner::new(config).unwrap();
         let mut planning = planner.begin(0.01, &hard.footprint, &scene, hard.start, hard.goal).unwrap();
         let plan = planning.advance(u64::MAX).expect("all at once");
         let DockingPlan::Impossible(none) = plan else { panic!("{method:?}: {plan:?}") };
@@ -105,7 +109,8 @@ fn a_whole_plan_has_a_limit_and_names_it() {
 /// One decision of the paper's method tests tens of thousands of poses: it yields between them.
 #[test]
 fn the_papers_method_rests_too() {
-    let config = DockingConfig { method: Method::Hong24, ..DockingConfig::default() };
+    let mut config = DockingConfig::default();
+    config.method = Method::Hong24;
     let planner = DockingPlanner::new(config).unwrap();
     let scene = ObstacleScene::new(&[Obstacle::Point(Vector2::new(0.0, 1.0))]).unwrap();
     let (start, goal) = (Pose2::IDENTITY, Pose2::new(0.1, 0.3, 0.2));

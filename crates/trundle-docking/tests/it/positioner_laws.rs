@@ -12,7 +12,8 @@ use trundle_docking::{
 };
 
 fn positioner(method: Method, footprint: Footprint, goal: Pose2) -> Positioner {
-    let docking = DockingConfig { method, ..DockingConfig::default() };
+    let mut docking = DockingConfig::default();
+    docking.method = method;
     Positioner::new(docking, PositionerConfig::default(), footprint, goal).unwrap()
 }
 

@@ -72,7 +72,10 @@ fn walks(seed: u64, lengths: std::ops::Range<usize>) -> impl Iterator<Item = Wal
 }
 
 fn planner(bound_boxes: usize) -> DockingPlanner {
-    let config = DockingConfig { margin: 0.0, max_work: 2_000_000, bound_boxes, ..DockingConfig::default() };
+    let mut config = DockingConfig::default();
+    config.margin = 0.0;
+    config.max_work = 2_000_000;
+    config.bound_boxes = bound_boxes;
     DockingPlanner::new(config).unwrap()
 }
 
@@ -174,7 +177,9 @@ fn a_solution_in_the_mirror_is_free_and_solves_the_mirrored_problem() {
 
 #[test]
 fn every_pose_of_a_solution_keeps_the_margin_that_it_states() {
-    let planner = DockingPlanner::new(DockingConfig { bound_boxes: 0, ..DockingConfig::default() }).unwrap();
+    let mut config = DockingConfig::default();
+    config.bound_boxes = 0;
+    let planner = DockingPlanner::new(config).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(86);
     let mut kept_all = 0;
     for i in 0..25 {

@@ -105,7 +105,8 @@ fn every_number_of_hong24_is_checked() {
     ];
     refuses("docking.paper.", &DockingConfig::default(), &settings, planner);
     for (max_motions, good) in [(0, false), (1, true), (1000, true), (1001, false)] {
-        let config = Hong24Config { max_motions, ..Hong24Config::default() };
+        let mut config = Hong24Config::default();
+        config.max_motions = max_motions;
         assert_eq!(config.validated().is_ok(), good, "{max_motions}");
     }
 }
@@ -127,15 +128,20 @@ fn every_number_of_the_positioner_is_checked() {
         ("patience", "s", 0.1, 100.0, |c, x| c.patience = x),
     ];
     refuses("positioner.", &PositionerConfig::default(), &settings, positioner);
-    let attempts = positioner(PositionerConfig { attempts: 101, ..PositionerConfig::default() });
+    let mut config = PositionerConfig::default();
+    config.attempts = 101;
+    let attempts = positioner(config);
     assert_eq!(attempts, Err("positioner.attempts is 101, expected 0 to 100".into()));
-    let work = positioner(PositionerConfig { step_work: 9_999, ..PositionerConfig::default() });
+    let mut config = PositionerConfig::default();
+    config.step_work = 9_999;
+    let work = positioner(config);
     assert_eq!(work, Err("positioner.step_work is 9999, expected 10000 to 100000000000".into()));
 }
 
 #[test]
 fn a_positioner_refuses_the_settings_of_its_planner_too() {
-    let docking = DockingConfig { reach: 0.0, ..DockingConfig::default() };
+    let mut docking = DockingConfig::default();
+    docking.reach = 0.0;
     let made = Positioner::new(docking, PositionerConfig::default(), Footprint::KOBUKI, Pose2::IDENTITY);
     assert_eq!(made.unwrap_err().to_string(), "docking.reach is 0 m, expected 0.1 to 10");
 }
@@ -154,7 +160,8 @@ fn every_search_limit_names_a_setting_that_the_configuration_has() {
 fn missing_keys_take_their_default_and_unknown_keys_are_refused() {
     let read = |text: &str| serde_json::from_str::<DockingConfig>(text);
     let limits = MotionLimits { speed: 0.1, ..MotionLimits::default() };
-    let expected = DockingConfig { limits, ..DockingConfig::default() };
+    let mut expected = DockingConfig::default();
+    expected.limits = limits;
     assert_eq!(read(r#"{"limits": {"speed": 0.1}}"#).unwrap(), expected);
     for text in [r#"{"margins": 0.1}"#, r#"{"limits": {"v": 0.1}}"#, r#"{"paper": {"w1": 1}}"#] {
         assert!(read(text).unwrap_err().to_string().contains("unknown field"), "{text}");

@@ -42,10 +42,17 @@ fn min_along_path(footprint: &Footprint, manoeuvre: &Manoeuvre, pieces: &[(Vecto
 #[test]
 fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
     let mut rng = ChaCha8Rng::seed_from_u64(21);
-    let config = DockingConfig { max_work: 4_000_000, bound_boxes: 100, ..DockingConfig::default() };
-    let dockers =
-        [0.0, 0.01].map(|margin| DockingPlanner::new(DockingConfig { margin, ..config.clone() }).unwrap());
-    let by_paper = DockingConfig { method: Method::Hong24, margin: 0.0, ..config };
+    let mut config = DockingConfig::default();
+    config.max_work = 4_000_000;
+    config.bound_boxes = 100;
+    let dockers = [0.0, 0.01].map(|margin| {
+        let mut config = config.clone();
+        config.margin = margin;
+        DockingPlanner::new(config).unwrap()
+    });
+    let mut by_paper = config;
+    by_paper.method = Method::Hong24;
+    by_paper.margin = 0.0;
     let greedy = DockingPlanner::new(by_paper).unwrap();
     let (mut count, mut found, mut never, mut min) = (0, 0, 0, f64::INFINITY);
     while count < PROBLEMS {

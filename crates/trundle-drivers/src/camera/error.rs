@@ -106,7 +106,7 @@ pub enum CameraError {
         /// The number that is wrong.
         problem: Invalid,
     },
-    /// The camera delivers the same frame again and again.
+    /// The camera delivers the same frame repeatedly.
     #[error("the camera delivered the same frame {frames} times: open it anew")]
     Stuck {
         /// Identical frames in a row.

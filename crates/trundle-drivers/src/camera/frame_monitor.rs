@@ -20,6 +20,7 @@ const SIGNATURE_STEP_BYTES: usize = 64;
 
 /// A fault of a camera detected in its frames.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CameraFault {
     /// The same frame repeatedly. The camera must be reopened.
     #[error("the camera delivered the same frame {frames} times: open it anew")]

@@ -3,6 +3,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`device`] | the trait [`DepthCamera`] |
+//! | [`gyro`] | samples of a camera's gyro |
 //! | [`info`] | a camera's own description: streams, intrinsics, delay |
 //! | [`frame`] | colour and depth as delivered |
 //! | [`pixels`] | pixel formats to [`trundle_core::ColorImage`] and [`trundle_core::DepthImage`] |
@@ -18,6 +19,7 @@ pub mod device;
 pub mod error;
 pub mod frame;
 pub mod frame_monitor;
+pub mod gyro;
 pub mod info;
 pub mod kinect2;
 pub mod native;
@@ -31,5 +33,6 @@ pub use device::DepthCamera;
 pub use error::CameraError;
 pub use frame::{CameraFrame, RawImage};
 pub use frame_monitor::{CameraFault, FrameMonitor};
+pub use gyro::GyroSample;
 pub use info::{CameraInfo, StreamInfo, UsbSpeed};
 pub use pixel_format::PixelFormat;

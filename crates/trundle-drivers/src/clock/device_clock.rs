@@ -32,6 +32,7 @@ const MAX_JUMP_SPREAD_S: f64 = 0.1;
 
 /// Configuration of a [`DeviceClock`].
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct DeviceClockConfig {
     /// Time over which the smallest delays are stored, s, 10 to 600. Default 60.
     pub window_s: f64,

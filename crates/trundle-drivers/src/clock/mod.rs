@@ -14,7 +14,7 @@ pub mod reorder_buffer;
 pub mod unwrap;
 
 pub use device_clock::{DeviceClock, DeviceClockConfig};
-pub use reorder_buffer::ReorderBuffer;
+pub use reorder_buffer::{ReorderBuffer, ReorderCounts};
 pub use unwrap::MillisUnwrapper;
 
 use std::sync::Arc;

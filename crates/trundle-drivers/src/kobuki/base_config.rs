@@ -7,6 +7,7 @@ use trundle_core::{Invalid, require_in};
 /// Configuration of a [`super::base::KobukiBase`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct KobukiBaseConfig {
     /// Time without a command after which the base is sent zero speed, s, 0.05 to 10. Default 0.2.
     pub command_timeout_s: f64,

@@ -198,7 +198,7 @@ fn changed<T: PartialEq + Copy>(reported: &mut T, state: T) -> Option<T> {
 }
 
 fn body(stamp: Stamp, kind: BodyEventKind) -> SensorEvent {
-    SensorEvent::Body(BodyEvent { stamp, kind })
+    SensorEvent::Body(BodyEvent::new(stamp, kind))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::fmt;
 
-/// Packets and refused headers that are looked back at: 50, a second of a sound stream. Source: ours.
+/// Number of the newest packets and refused headers that are compared: 50, a second of a sound stream. Source: ours.
 const WINDOW_PACKETS: usize = 50;
 /// Step between the stamps of two packets below which they come from two bases: 15 ms. Source: ours; a base's step is 20 ms.
 const MIN_STEP_MS: i16 = 15;
@@ -18,6 +18,7 @@ const MIN_REFUSED: usize = 10;
 
 /// A fault of the stream of packets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum StreamFault {
     /// Stamps alternate between two sequences, or arrive at twice the expected rate.
     TwoSources {

@@ -104,7 +104,9 @@ fn depth_of_steps_and_a_plane_is_exact_to_a_millimetre() {
 
 #[test]
 fn the_filters_reduce_noise_and_flying_pixels() {
-    let plain = DecoderConfig { smooths_phasors: false, removes_flying_pixels: false, ..Default::default() };
+    let mut plain = DecoderConfig::default();
+    plain.smooths_phasors = false;
+    plain.removes_flying_pixels = false;
     let mut decoder = DepthDecoder::new(&calibration(), plain).unwrap();
     let (raw, _) = errors(decoder.decode(&PACKED).unwrap(), |_, _| true);
     let wraps = raw.iter().filter(|error| error.abs() > 0.3).count();
@@ -133,7 +135,8 @@ fn the_filters_reduce_noise_and_flying_pixels() {
 #[test]
 fn smoothing_keeps_edges() {
     let two = |x: usize, _: usize| if x < 200 { (1.0, 0.8) } else { (1.4, 0.8) };
-    let plain = DecoderConfig { removes_flying_pixels: false, ..Default::default() };
+    let mut plain = DecoderConfig::default();
+    plain.removes_flying_pixels = false;
     let mut decoder = DepthDecoder::new(&calibration(), plain).unwrap();
     let depth = decoder.decode(&packed_images(two, &p0(), 8)).unwrap();
     for (x, truth) in [(198, 1.0), (199, 1.0), (200, 1.4), (201, 1.4)] {
@@ -164,7 +167,8 @@ fn the_three_frequencies_agree_again_only_after_18_7_metres() {
     let period = 299_792_458.0 / (2.0 * 8e6);
     assert!(wraps.iter().all(|wrap| (period / wrap - (period / wrap).round()).abs() < 1e-9));
     assert_eq!(MODULATION_HZ.map(|hz| hz % 8e6), [0.0; 3]);
-    let far = DecoderConfig { max_range_m: 18.0, ..Default::default() };
+    let mut far = DecoderConfig::default();
+    far.max_range_m = 18.0;
     let mut decoder = DepthDecoder::new(&calibration(), far).unwrap();
     let depth = decoder.decode(&packed_images(|_, _| (14.0, 40.0), &p0(), 2)).unwrap();
     let errors: Vec<f64> =
@@ -177,7 +181,8 @@ fn settings_and_sizes_out_of_range_are_named() {
     let refused = |calibration: &Kinect2Calibration, config| {
         DepthDecoder::new(calibration, config).unwrap_err().to_string()
     };
-    let config = DecoderConfig { max_range_m: 30.0, ..Default::default() };
+    let mut config = DecoderConfig::default();
+    config.max_range_m = 30.0;
     assert_eq!(refused(&calibration(), config), "max_range_m is 30 m, expected 0.4 to 18.73");
     let mut short = calibration();
     short.p0[1].pop();

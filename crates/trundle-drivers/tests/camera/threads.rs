@@ -135,12 +135,11 @@ fn device_stamps() -> StampMapFactory {
 }
 
 fn quick() -> CameraThreadConfig {
-    CameraThreadConfig {
-        max_silence_s: 1.0,
-        min_reopen_wait_s: 0.005,
-        max_reopen_wait_s: 0.02,
-        ..Default::default()
-    }
+    let mut config = CameraThreadConfig::default();
+    config.max_silence_s = 1.0;
+    config.min_reopen_wait_s = 0.005;
+    config.max_reopen_wait_s = 0.02;
+    config
 }
 
 fn recording() -> CameraInfo {
@@ -188,7 +187,9 @@ fn a_silent_camera_is_lost_and_opened_anew() {
 
 #[test]
 fn silence_is_named_with_its_length() {
-    let config = CameraThreadConfig { min_reopen_wait_s: 30.0, max_reopen_wait_s: 30.0, ..quick() };
+    let mut config = quick();
+    config.min_reopen_wait_s = 30.0;
+    config.max_reopen_wait_s = 30.0;
     let rig = Rig::new(vec![Some(vec![Act::Frame(1, 1)])], info(), config);
     rig.wait("loss", |rig| rig.thread.counters().lost == 1);
     let fault = rig.thread.last_fault().unwrap();
@@ -204,7 +205,8 @@ fn silence_is_named_with_its_length() {
 
 #[test]
 fn unplugging_is_reported_at_once() {
-    let config = CameraThreadConfig { max_silence_s: 60.0, ..quick() };
+    let mut config = quick();
+    config.max_silence_s = 60.0;
     let first = vec![Act::Frame(1, 1), Act::Silence, Act::Silence, Act::Silence, Act::Unplug];
     let rig = Rig::new(vec![Some(first), Some(vec![Act::Frame(9, 9)])], info(), config);
     rig.wait("the second camera", |rig| rig.story().contains(&"9".into()));
@@ -224,7 +226,8 @@ fn a_driver_that_panics_is_a_lost_camera() {
 fn no_frame_of_a_lost_camera_follows_its_loss() {
     let script =
         |camera: i64| Some(vec![Act::Frame(camera * 10 + 1, 1), Act::Frame(camera * 10 + 2, 2), Act::Unplug]);
-    let config = CameraThreadConfig { max_silence_s: 60.0, ..quick() };
+    let mut config = quick();
+    config.max_silence_s = 60.0;
     let rig = Rig::with_work((0..40).map(script).collect(), info(), config, Duration::from_millis(3));
     rig.wait("all cameras", |rig| rig.thread.counters().lost > 40);
     let (mut next_camera, mut is_up) = (0, false);
@@ -258,7 +261,8 @@ fn a_stuck_camera_is_counted_and_opened_anew() {
     let rig = Rig::new(vec![Some(stuck), Some(vec![Act::Frame(100, 1)])], info(), quick());
     rig.wait("the second camera", |rig| rig.story().contains(&"100".into()));
     assert_eq!(rig.thread.counters().stuck, 1);
-    let rendered = CameraThreadConfig { expects_noise: false, ..quick() };
+    let mut rendered = quick();
+    rendered.expects_noise = false;
     let same = (0..40).map(|i| Act::Frame(i, 7)).collect();
     let rig = Rig::new(vec![Some(same)], info(), rendered);
     rig.wait("the last frame", |rig| rig.story().contains(&"39".into()));

@@ -5,12 +5,14 @@ use crate::rig::{Rig, clock, is_near, patient, wait_for};
 use std::sync::mpsc;
 use trundle_core::{SensorEvent, Twist2};
 use trundle_drivers::kobuki::protocol::{Led, Outputs, Version};
-use trundle_drivers::kobuki::{KobukiBase, KobukiBaseConfig, SerialConnector};
+use trundle_drivers::kobuki::{KobukiBase, SerialConnector};
 
 #[test]
 fn after_an_unplugged_cable_the_first_speed_is_zero() {
     // Commands with a long timeout: a stored one would be sent after the loss.
-    let rig = Rig::with("unplug", Sends::Packets, KobukiBaseConfig { command_timeout_s: 10.0, ..patient() });
+    let mut config = patient();
+    config.command_timeout_s = 10.0;
+    let rig = Rig::with("unplug", Sends::Packets, config);
     let fast = Twist2::new(0.3, 0.0);
     let outputs = Outputs { led2: Led { red: true, green: false }, ..Outputs::default() };
     rig.base.set_outputs(outputs);
@@ -40,7 +42,8 @@ fn after_an_unplugged_cable_the_first_speed_is_zero() {
 
 #[test]
 fn a_silent_base_is_a_lost_link_and_comes_back() {
-    let config = KobukiBaseConfig { silence_limit_s: 0.1, ..patient() };
+    let mut config = patient();
+    config.silence_limit_s = 0.1;
     let rig = Rig::with("silent", Sends::Packets, config);
     wait_for("the link", || rig.base.is_up());
     rig.device.state().sends = Sends::Nothing;
@@ -58,7 +61,8 @@ fn a_silent_base_is_a_lost_link_and_comes_back() {
 
 #[test]
 fn a_running_base_stays_up() {
-    let config = KobukiBaseConfig { silence_limit_s: 1.5, ..patient() };
+    let mut config = patient();
+    config.silence_limit_s = 1.5;
     let rig = Rig::with("running", Sends::Packets, config);
     wait_for("two seconds of packets", || rig.base.counters().decoder.packets > 120);
     assert_eq!(rig.links(), [true]);

@@ -13,12 +13,11 @@ const LIMIT: Duration = Duration::from_secs(30);
 
 /// A configuration for a machine that may stall for seconds.
 pub fn patient() -> KobukiBaseConfig {
-    KobukiBaseConfig {
-        silence_limit_s: 5.0,
-        start_limit_s: 30.0,
-        transport_delay_s: 0.0,
-        ..Default::default()
-    }
+    let mut config = KobukiBaseConfig::default();
+    config.silence_limit_s = 5.0;
+    config.start_limit_s = 30.0;
+    config.transport_delay_s = 0.0;
+    config
 }
 
 /// The host's clock.
@@ -97,7 +96,8 @@ pub fn is_near(a: Twist2, b: Twist2) -> bool {
 
 /// The error of a start at a device, within `start_limit_s`.
 pub fn start_error(device: &Device, start_limit_s: f64) -> StartError {
-    let config = KobukiBaseConfig { start_limit_s, ..patient() };
+    let mut config = patient();
+    config.start_limit_s = start_limit_s;
     let connector = Box::new(SerialConnector::new(device.port()));
     KobukiBase::start(connector, config, clock(), Box::new(drop)).unwrap_err()
 }

@@ -5,7 +5,7 @@ use crate::rig::{Rig, clock, patient, start_error, wait_for};
 use trundle_core::Twist2;
 use trundle_drivers::kobuki::protocol::Version;
 use trundle_drivers::kobuki::stream_check::StreamFault;
-use trundle_drivers::kobuki::{ConnectError, KobukiBase, KobukiBaseConfig, SerialConnector, StartError};
+use trundle_drivers::kobuki::{ConnectError, KobukiBase, SerialConnector, StartError};
 
 const FIRMWARE: Version = Version::new(1, 2, 0);
 
@@ -78,7 +78,8 @@ fn a_firmware_of_another_protocol_is_refused_and_an_old_one_is_not() {
 
 #[test]
 fn a_wrong_setting_is_refused_before_the_port_is_opened() {
-    let config = KobukiBaseConfig { command_timeout_s: f64::NAN, ..patient() };
+    let mut config = patient();
+    config.command_timeout_s = f64::NAN;
     let connector = Box::new(SerialConnector::new("/dev/trundle-no-such-port"));
     let error = KobukiBase::start(connector, config, clock(), Box::new(drop)).unwrap_err();
     assert_eq!(error.to_string(), "command_timeout_s is NaN s, expected 0.05 to 10");

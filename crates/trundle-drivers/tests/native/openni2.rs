@@ -21,7 +21,10 @@ fn library() -> Option<PathBuf> {
 fn settings(library: PathBuf) -> OpenNiSettings {
     let camera = PinholeCamera::from_field_of_view((320, 240), (1.0, 0.8)).unwrap();
     let calibration = RgbdCalibration { color: camera, depth: camera, color_from_depth: None };
-    OpenNiSettings { calibration: Some(calibration), library: Some(library), ..OpenNiSettings::default() }
+    let mut settings = OpenNiSettings::default();
+    settings.calibration = Some(calibration);
+    settings.library = Some(library);
+    settings
 }
 
 fn check(frame: &CameraFrame) {

@@ -1,7 +1,8 @@
 # Records a software device with librealsense, for the test of the RealSense camera.
 # Usage: python3 realsense_recording.py SITE_PACKAGES FILE.db3
 # Depth: 64 x 48, value 100 n + 1, first pixel 7, for n = 0 to 4. Colour: 80 x 60, value n + 1, first pixel (9, 8, 7).
-# Gyro: (0.1, 0.2, 0.3 + n) rad/s. Stamps: 1000 + 33.25 n ms; the colour image 0.5 ms later.
+# Gyro: samples m = 0 to 19 of (0.1, 0.2, 0.3 + m) rad/s, four an image, at 999 + 8 m ms.
+# Stamps of the images: 1000 + 33.25 n ms; the colour image 0.5 ms later.
 import array
 import sys
 import time
@@ -10,6 +11,8 @@ sys.path.insert(0, sys.argv[1])
 import pyrealsense2 as rs
 
 FRAMES = 5
+# Samples of the gyro an image.
+SAMPLES = 4
 
 
 def intrinsics(size, focal, model, coefficients):
@@ -86,7 +89,8 @@ for sensor in sensors:
     sensor.start(queue)
 for n in range(FRAMES):
     stamp = 1000 + 33.25 * n
-    motion_sensor.on_motion_frame(rate(gyro_profile, (0.1, 0.2, 0.3 + n), stamp - 1, n + 1))
+    for m in range(SAMPLES * n, SAMPLES * (n + 1)):
+        motion_sensor.on_motion_frame(rate(gyro_profile, (0.1, 0.2, 0.3 + m), 999 + 8 * m, m + 1))
     depth = memoryview(array.array("H", [7] + [100 * n + 1] * (64 * 48 - 1))).cast("B").cast("H", (48, 64))
     depth_sensor.on_video_frame(image(depth_profile, depth, 64, 2, stamp, n + 1))
     color = memoryview(bytes([9, 8, 7] + [n + 1] * (80 * 60 * 3 - 3))).cast("B", (60, 80, 3))

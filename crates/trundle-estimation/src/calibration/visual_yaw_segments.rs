@@ -2,7 +2,7 @@
 
 use crate::calibration::gyro_calibration::VisualTurn;
 use nalgebra::UnitQuaternion;
-use trundle_core::{Stamp, wrap_angle};
+use trundle_core::{Hypotenuse, Stamp, wrap_angle};
 
 /// Splits the camera's heading into segments for comparison with the gyro.
 #[derive(Debug, Clone, Default)]
@@ -71,7 +71,7 @@ impl VisualYawSegments {
         if !is_long || rate > MAX_END_TURN_RATE_RAD_S && duration < MAX_SEGMENT_S {
             return None;
         }
-        let camera_sigma = VISUAL_TURN_SIGMA_RAD.hypot(VISUAL_DRIFT_SIGMA_RAD_PER_M * distance);
+        let camera_sigma = VISUAL_TURN_SIGMA_RAD.hypotenuse(VISUAL_DRIFT_SIGMA_RAD_PER_M * distance);
         let (by_camera, by_gyro) = (segment.by_camera, segment.by_odometry);
         self.segment = Some(Segment::from(heading));
         Some(VisualTurn { by_camera, camera_sigma, by_gyro, duration })

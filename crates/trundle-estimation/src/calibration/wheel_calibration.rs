@@ -1,7 +1,7 @@
 //! Online calibration of the wheels' radii.
 
 use crate::{calibration::scalar_kalman::ScalarKalman, odometry_config::OdometryConfig};
-use trundle_core::{Pose2, Vector3};
+use trundle_core::{Hypotenuse, Pose2, Vector3};
 
 /// Ratio of the wheels' true to nominal radii, estimated during the drive by two scalar Kalman filters.
 ///
@@ -120,7 +120,7 @@ impl WheelCalibration {
             return;
         }
         let by_camera = (visual_position - start.visual_position).norm();
-        let sigma = CHORD_SIGMA_M.hypot(CHORD_SIGMA_RATIO * by_camera) / by_odometry;
+        let sigma = CHORD_SIGMA_M.hypotenuse(CHORD_SIGMA_RATIO * by_camera) / by_odometry;
         self.mean.update(self.mean.value() * by_camera / by_odometry, sigma * sigma);
         self.chord_start = Some(end);
     }

@@ -8,6 +8,7 @@ use trundle_core::{Invalid, require_in};
 /// The vendor's documentation names sectors and receivers without numbers. The defaults are ours; measure them on the real station.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct StationLightConfig {
     /// Half angle of the middle sector at the station, deg, 1 to 45. Default 10 (ours).
     pub middle_half_angle_deg: f64,

@@ -46,7 +46,7 @@ const BROKEN_SHARE: f64 = 0.4;
 /// Fraction of the common points seen again below which the sequence is doubtful. A displacement to another wall at the same distance
 /// leaves 0.55. Source: docs/experiments/pose-monitor.md.
 const DOUBTFUL_SHARE: f64 = 0.65;
-/// Fraction of the common points from which a scan shows the surfaces from before the break. Source: ours.
+/// Smallest fraction of the common points at which a scan shows the surfaces from before the break. Source: ours.
 const RESTORED_SHARE: f64 = 0.8;
 /// Time without a comparison \[s\] after which the motion in between is unknown. Source: ours, the shortest time to carry a robot away.
 const MAX_GAP_S: f64 = 1.0;

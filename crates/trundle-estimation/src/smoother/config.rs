@@ -6,6 +6,7 @@ use trundle_core::{Invalid, require_in};
 /// Window, keyframes and noise of the smoother. The noise of wheels and gyro is that of [`crate::OdometryConfig`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SmootherConfig {
     /// Length of the window and choice of keyframes.
     pub window: WindowConfig,
@@ -18,6 +19,7 @@ pub struct SmootherConfig {
 /// Length of the window and choice of keyframes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct WindowConfig {
     /// Length of the window, s, 1 to 60. Default 15.
     pub length: f64,

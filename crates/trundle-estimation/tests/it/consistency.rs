@@ -72,14 +72,12 @@ fn mean_squared_error(config: &LocalizerConfig, correlation: f64, runs: u64) -> 
 
 #[test]
 fn white_errors_match_the_covariance() {
-    let config = LocalizerConfig {
-        scan_position_sigma: MEASURED[0],
-        scan_heading_sigma_deg: MEASURED[2].to_degrees(),
-        min_position_sigma: 0.0,
-        min_heading_sigma_deg: 0.0,
-        gate: 10.0,
-        ..LocalizerConfig::default()
-    };
+    let mut config = LocalizerConfig::default();
+    config.scan_position_sigma = MEASURED[0];
+    config.scan_heading_sigma_deg = MEASURED[2].to_degrees();
+    config.min_position_sigma = 0.0;
+    config.min_heading_sigma_deg = 0.0;
+    config.gate = 10.0;
     let error = mean_squared_error(&config, 0.0, 20);
     assert!(error > 2.6 && error < 3.4, "3 degrees of freedom: {error}");
 }
@@ -90,6 +88,8 @@ fn correlated_errors_do_not_make_the_filter_overconfident() {
     // Errors are correlated over 0.6 s: ten measurements.
     let error = mean_squared_error(&usual, 0.9, 20);
     assert!(error < 6.0, "{error}");
-    let trusting = LocalizerConfig { min_position_sigma: 0.0, min_heading_sigma_deg: 0.0, ..usual };
+    let mut trusting = usual;
+    trusting.min_position_sigma = 0.0;
+    trusting.min_heading_sigma_deg = 0.0;
     assert!(mean_squared_error(&trusting, 0.9, 20) > 1.5 * error, "without the sigma floor");
 }

@@ -60,7 +60,8 @@ pub struct Drive {
 
 impl Drive {
     pub fn new(seed: u64, config: SmootherConfig) -> Self {
-        let odometry = OdometryConfig { wheel_radius_sigma: 0.02, ..OdometryConfig::default() };
+        let mut odometry = OdometryConfig::default();
+        odometry.wheel_radius_sigma = 0.02;
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let calibration = TrueCalibration::drawn(&mut rng, &odometry, &config);
         let smoother =

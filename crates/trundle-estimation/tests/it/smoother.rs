@@ -10,14 +10,14 @@ use trundle_estimation::{MeasurementUse, SmootherConfig, VisualAnchor, VisualPos
 /// A window of this length with keyframes 0.1 m apart.
 fn windowed(length: f64, max_keyframes: usize) -> SmootherConfig {
     let (keyframe_distance, keyframe_turn_deg) = (0.1, 10.0);
-    let window = WindowConfig {
-        length,
-        max_keyframes,
-        keyframe_distance,
-        keyframe_turn_deg,
-        ..WindowConfig::default()
-    };
-    SmootherConfig { window, ..SmootherConfig::default() }
+    let mut window = WindowConfig::default();
+    window.length = length;
+    window.max_keyframes = max_keyframes;
+    window.keyframe_distance = keyframe_distance;
+    window.keyframe_turn_deg = keyframe_turn_deg;
+    let mut config = SmootherConfig::default();
+    config.window = window;
+    config
 }
 
 fn config() -> SmootherConfig {

@@ -130,8 +130,9 @@ fn gyro_scale_and_bias_are_estimated_from_visual_turns() {
         assert!((scale * gyro - 1.0).abs() < 1e-3, "{scale} for {gyro}");
         assert!((found - bias).abs() < 5e-4, "{found} for {bias}");
     }
-    let (scale, _) =
-        calibrated((0.99, 0.0), true, OdometryConfig { gyro_scale_sigma: 0.0, ..config.clone() });
+    let mut odometry = config.clone();
+    odometry.gyro_scale_sigma = 0.0;
+    let (scale, _) = calibrated((0.99, 0.0), true, odometry);
     assert_eq!(scale, 1.0);
     assert_eq!(
         calibrated((0.99, 0.0), false, config),
@@ -209,7 +210,9 @@ fn a_metre_adds_the_documented_sigmas() {
     assert!((covariance[(0, 0)].sqrt() - 0.02).abs() < 1e-4, "{covariance}");
     assert!((covariance[(2, 2)].sqrt() - 0.02).abs() < 1e-4, "{covariance}");
     // Across: the heading's random walk transported along the path, plus the sideways noise.
-    let mut rails = Drive::with(OdometryConfig { sideways_noise: 0.0, ..OdometryConfig::default() });
+    let mut config = OdometryConfig::default();
+    config.sideways_noise = 0.0;
+    let mut rails = Drive::with(config);
     rails.drive(Twist2::new(0.5, 0.0), 100);
     let transported = rails.odometry.odometry().covariance[(1, 1)];
     assert!((transported - 0.02_f64.powi(2) / 3.0).abs() < 4e-6, "{transported}");
@@ -343,7 +346,8 @@ fn a_broken_reading_is_rejected_and_a_counter_reset_is_detected() {
 
 #[test]
 fn an_invalid_configuration_is_rejected_with_its_field() {
-    let config = OdometryConfig { max_gap: f64::NAN, ..OdometryConfig::default() };
+    let mut config = OdometryConfig::default();
+    config.max_gap = f64::NAN;
     assert_eq!(WheelOdometry::new(DifferentialDrive::KOBUKI, config).unwrap_err().field, "max_gap");
 }
 

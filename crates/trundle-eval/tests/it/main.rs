@@ -63,7 +63,8 @@ fn agrees_with_evo(fixture: &str) {
         ("ape_rigid", Alignment::Rigid),
         ("ape_similarity", Alignment::Similarity),
     ] {
-        let config = AbsoluteConfig { alignment, ..Default::default() };
+        let mut config = AbsoluteConfig::default();
+        config.alignment = alignment;
         let error = absolute_trajectory_error(&truth, &estimate, &config).unwrap();
         same(key, &error.statistics, false, &fixture);
         if alignment == Alignment::None {
@@ -75,12 +76,15 @@ fn agrees_with_evo(fixture: &str) {
         ("rpe_frames_7", Delta::Frames(7)),
         ("rpe_metres", Delta::Metres(0.3)),
     ] {
-        let config = RelativeConfig { delta, ..Default::default() };
+        let mut config = RelativeConfig::default();
+        config.delta = delta;
         let error = relative_pose_error(&truth, &estimate, &config).unwrap();
         same(&format!("{key}_translation"), &error.translation, false, &fixture);
         same(&format!("{key}_angle_deg"), &error.rotation, true, &fixture);
     }
-    let config = RelativeConfig { delta: Delta::Frames(7), all_pairs: true, ..Default::default() };
+    let mut config = RelativeConfig::default();
+    config.delta = Delta::Frames(7);
+    config.all_pairs = true;
     let error = relative_pose_error(&truth, &estimate, &config).unwrap();
     same("rpe_frames_7_all_translation", &error.translation, false, &fixture);
 }

@@ -9,7 +9,7 @@ use trundle_app::AppError;
 use trundle_core::{OccupancyGrid, Pose2, Vector2, wrap_angle};
 use trundle_experiments::laser_drive::{LaserDrive, drive, random_start, world_of};
 use trundle_io::read_map;
-use trundle_mapping::{MapperConfig, ParticleConfig, ParticleMapper};
+use trundle_mapping::{ParticleConfig, ParticleMapper};
 use trundle_sim::LaserConfig;
 
 /// Maps of the folder.
@@ -54,9 +54,9 @@ fn main() -> Result<(), AppError> {
 
 /// Error of the trajectory of a mapped drive.
 fn error(drive: &LaserDrive, grid: &OccupancyGrid, seed: u64) -> Result<Error, AppError> {
-    let default = ParticleConfig::default();
-    let map = MapperConfig { ..default.map.with_resolution(grid.geometry().resolution) };
-    let mut mapper = ParticleMapper::new(ParticleConfig { map, ..default }, seed)?;
+    let mut config = ParticleConfig::default();
+    config.map = config.map.with_resolution(grid.geometry().resolution);
+    let mut mapper = ParticleMapper::new(config, seed)?;
     for entry in &drive.scans {
         mapper.update(entry.odom_from_base, &entry.scan);
     }

@@ -15,7 +15,7 @@ use trundle_app::AppError;
 use trundle_core::{OccupancyGrid, Pose2};
 use trundle_experiments::laser_drive::{drive, random_start, world_of};
 use trundle_io::read_map;
-use trundle_mapping::{Localized, MapLocalizer, MapperConfig, ParticleConfig};
+use trundle_mapping::{Localized, MapLocalizer, ParticleConfig};
 use trundle_sim::LaserConfig;
 
 /// Maps of the folder.
@@ -84,9 +84,9 @@ fn localize_drive(
     let world = world_of(&name.display().to_string(), grid)?;
     let start = random_start(grid, &world, seed)?;
     let drive = drive(world, (laser, start), DRIVE_S, seed)?;
-    let default = ParticleConfig::default();
-    let map = MapperConfig { ..default.map.with_resolution(grid.geometry().resolution) };
-    let mut localizer = MapLocalizer::from_grid(grid, ParticleConfig { map, ..default }, seed)?;
+    let mut config = ParticleConfig::default();
+    config.map = config.map.with_resolution(grid.geometry().resolution);
+    let mut localizer = MapLocalizer::from_grid(grid, config, seed)?;
     let mut result = DriveResult::default();
     for scan in &drive.scans {
         let reported = localizer.update(scan.odom_from_base, &scan.scan);

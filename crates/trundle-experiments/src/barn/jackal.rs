@@ -2,11 +2,7 @@
 
 use crate::laser_run::hokuyo;
 use crate::simulated::simulated_body;
-use trundle_control::{FollowerConfig, SafetyConfig};
-use trundle_core::{DifferentialDrive, DriveLimits, Invalid};
-use trundle_estimation::OdometryConfig;
-use trundle_mapping::MapperConfig;
-use trundle_planning::{ClearanceCostConfig, PlannerConfig, TimingConfig};
+use trundle_core::{DifferentialDrive, DriveLimits, Hypotenuse, Invalid};
 use trundle_runtime::{RangeSource, RobotConfig};
 use trundle_sim::{FaultSchedule, SimConfig};
 
@@ -19,7 +15,7 @@ const ACCELERATION_M_S2: f64 = 3.0;
 pub fn robot() -> RobotConfig {
     let (x, y) = HALF_SIZE_M;
     let mut robot = RobotConfig::default();
-    robot.footprint_radius = x.hypot(y);
+    robot.footprint_radius = x.hypotenuse(y);
     robot.footprint = Some(vec![[x, y], [-x, y], [-x, -y], [x, -y]]);
     robot.sight = RangeSource::Laser;
     robot.drive = DifferentialDrive { wheel_radius: 0.098, wheelbase: 0.3765, ..DifferentialDrive::KOBUKI };
@@ -33,23 +29,18 @@ pub fn robot() -> RobotConfig {
     robot.schedule.map_hz = 20.0;
     robot.schedule.check_hz = 20.0;
     robot.schedule.improve_hz = 4.0;
-    robot.odometry = OdometryConfig { max_speed: 5.0, ..OdometryConfig::default() };
-    robot.mapping = MapperConfig { max_range: 10.0, ..MapperConfig::default() };
-    robot.planning = PlannerConfig {
-        // The laser covers the floor ahead, and the robot stops from this speed within 0.2 m.
-        timing: TimingConfig { slow_speed: 0.5, unknown_speed: 1.0, ..TimingConfig::default() },
-        room: ClearanceCostConfig::default(),
-        ..PlannerConfig::default()
-    };
-    robot.control = FollowerConfig { wait_from: 0.1, wait_at: 0.3, ..FollowerConfig::default() };
-    robot.safety = SafetyConfig {
-        deceleration: ACCELERATION_M_S2,
-        angular_deceleration: 10.0,
-        latency: 0.08,
-        slow_margin: 0.02,
-        creep_speed: 0.4,
-        ..SafetyConfig::default()
-    };
+    robot.odometry.max_speed = 5.0;
+    robot.mapping.max_range = 10.0;
+    // The laser covers the floor ahead, and the robot stops from this speed within 0.2 m.
+    robot.planning.timing.slow_speed = 0.5;
+    robot.planning.timing.unknown_speed = 1.0;
+    robot.control.wait_from = 0.1;
+    robot.control.wait_at = 0.3;
+    robot.safety.deceleration = ACCELERATION_M_S2;
+    robot.safety.angular_deceleration = 10.0;
+    robot.safety.latency = 0.08;
+    robot.safety.slow_margin = 0.02;
+    robot.safety.creep_speed = 0.4;
     // Long enough for the gyro's bias; the laser's first scan is a sufficient view.
     robot.mission_executor.opening = 0.6;
     robot

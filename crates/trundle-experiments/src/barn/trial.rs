@@ -14,7 +14,7 @@ pub const TIME_LIMIT_S: f64 = 100.0;
 pub const GOAL_TOLERANCE_M: f64 = 1.0;
 /// Distance from the start at which the clock starts \[m\]. Source: the BARN challenge.
 pub const CLOCK_START_M: f64 = 0.1;
-/// Time before the limit from which a run counts as out of time \[s\]. Source: ours.
+/// Time before the limit after which a run counts as out of time \[s\]. Source: ours.
 const OUT_OF_TIME_MARGIN_S: f64 = 1.0;
 
 /// A run through a world.

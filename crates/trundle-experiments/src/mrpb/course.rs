@@ -2,13 +2,13 @@
 
 use crate::csv_rows::rows;
 use crate::data_sets::MRPB;
+use crate::map_scene::{map_from, scene_of_map};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use trundle_app::AppError;
-use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Pose2, Vector2, Vector3};
+use trundle_core::{Hypotenuse, OccupancyGrid, Pose2};
 use trundle_io::read_map;
-use trundle_sim::import::{RaisedMap, raise_map};
-use trundle_sim::{Cuboid, Finish, Lights, Paint, Person, Scene, Shape, Solid, World};
+use trundle_sim::{Person, Scene};
 
 /// A start and a goal of the benchmark on one of its maps.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -73,7 +73,7 @@ impl Course {
         if self.map == OPEN {
             return Ok(None);
         }
-        Ok(Some(laid_anew(&read_map(&self.file(folder))?, self.start, resolution)?))
+        Ok(Some(map_from(self.start, &read_map(&self.file(folder))?, resolution)?))
     }
 
     fn file(&self, folder: &Path) -> PathBuf {
@@ -85,56 +85,11 @@ impl Course {
     /// # Errors
     /// When the map cannot be read, or a number is outside its range.
     pub fn scene(&self, folder: &Path) -> Result<Scene, AppError> {
-        let mut solids = vec![floor()];
-        if self.map != OPEN {
-            let file = self.file(folder);
-            let walls = raise_map(&file.display().to_string(), &read_map(&file)?, &RaisedMap::default());
-            solids.extend(walls.map_err(|error| AppError::Input(error.to_string()))?);
-        }
-        Ok(Scene {
-            name: self.scenario.clone(),
-            world: World::new(solids, 1)?,
-            lights: Lights::default(),
-            people: self.people.clone(),
-            start: self.start,
-            goal: self.goal,
-            station: None,
-        })
+        let map = (self.map != OPEN).then(|| read_map(&self.file(folder))).transpose()?;
+        let mut scene = scene_of_map(&self.scenario, map.as_ref(), self.start, self.goal)?;
+        scene.people = self.people.clone();
+        Ok(scene)
     }
-}
-
-/// The same map with another cell size, in the frame of `world_from_map`: a cell is occupied if the map is occupied at its middle or
-/// halfway to a corner.
-fn laid_anew(map: &OccupancyGrid, world_from_map: Pose2, resolution: f64) -> Result<OccupancyGrid, Invalid> {
-    let old = map.geometry();
-    let (width, height) = (old.width as f64 * old.resolution, old.height as f64 * old.resolution);
-    let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
-    let corners = corners.map(|(x, y)| world_from_map.inverse().transform(old.origin + Vector2::new(x, y)));
-    let bound = |pick: fn(&Vector2) -> f64, end: fn(f64, f64) -> f64| {
-        corners.iter().map(pick).reduce(end).expect("invariant: four corners") / resolution
-    };
-    let low = [bound(|c| c.x, f64::min), bound(|c| c.y, f64::min)].map(f64::floor);
-    let high = [bound(|c| c.x, f64::max), bound(|c| c.y, f64::max)].map(f64::ceil);
-    let origin = Vector2::from(low) * resolution;
-    let [cols, rows] = [0, 1].map(|i| (high[i] - low[i]) as usize);
-    let mut grid = OccupancyGrid::filled(GridGeometry::new(resolution, origin, cols, rows)?, Cell::Unknown);
-    let geometry = *grid.geometry();
-    let around = [(0.0, 0.0), (1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
-    for k in 0..geometry.len() {
-        let cell = geometry.cell(k);
-        let at = |(x, y)| geometry.center(cell) + Vector2::new(x, y) * (0.25 * resolution);
-        let mut values = around.map(|part| map.at(world_from_map.transform(at(part)))).into_iter();
-        let middle = values.next().unwrap_or(Cell::Unknown);
-        grid.set(cell, if values.any(|value| value == Cell::Occupied) { Cell::Occupied } else { middle });
-    }
-    Ok(grid)
-}
-
-/// A floor under the whole area of the maps.
-fn floor() -> Solid {
-    let (center, size) = (Vector3::new(0.0, 0.0, -0.05), Vector3::new(40.0, 40.0, 0.1));
-    let shape = Shape::Cuboid(Cuboid { center, size, yaw: 0.0 });
-    Solid { shape, finish: Finish::all(Paint::Flat { color: [150, 150, 150] }) }
 }
 
 /// The people of a scenario. The benchmark gives each way-point a time. Here each person walks the same closed path at the mean speed of
@@ -156,7 +111,7 @@ fn person(trajectory: &[[f64; 3]]) -> Person {
     let (mut length, mut walking, mut standing, mut stops) = (0.0, 0.0, 0.0, 0_u32);
     let mut waypoints = vec![[trajectory[0][1], trajectory[0][2]]];
     for leg in trajectory.windows(2) {
-        let (time, step) = (leg[1][0] - leg[0][0], (leg[1][1] - leg[0][1]).hypot(leg[1][2] - leg[0][2]));
+        let (time, step) = (leg[1][0] - leg[0][0], (leg[1][1] - leg[0][1]).hypotenuse(leg[1][2] - leg[0][2]));
         if step > 0.0 {
             (length, walking) = (length + step, walking + time);
             waypoints.push([leg[1][1], leg[1][2]]);
@@ -183,25 +138,6 @@ mod tests {
         let person = person(&trajectory);
         assert_eq!(person.waypoints, [[1.0, 5.0], [1.0, 0.0]]);
         assert_eq!((person.speed, person.pause, person.around), (0.25, 5.0, true));
-    }
-
-    #[test]
-    fn a_map_laid_anew_has_its_walls_where_they_are_seen_from_the_start() {
-        let map =
-            OccupancyGrid::from_ascii(0.05, &["#".repeat(40), ".".repeat(40), ".".repeat(40)].join("\n"));
-        let (map, start) = (map.unwrap(), Pose2::new(1.0, 0.05, 0.3));
-        let new = laid_anew(&map, start, 0.05).unwrap();
-        let geometry = *new.geometry();
-        for k in 0..geometry.len() {
-            let (cell, at) = (new.cells()[k], start.transform(geometry.center(geometry.cell(k))));
-            match cell {
-                Cell::Occupied => assert!(at.y > 0.1 - 0.02, "{at}"),
-                Cell::Free => assert!(at.y < 0.1 && at.y > 0.0),
-                Cell::Unknown => assert!(map.at(at) == Cell::Unknown),
-            }
-        }
-        let walls = new.cells().iter().filter(|cell| **cell == Cell::Occupied).count();
-        assert!((40..=90).contains(&walls), "{walls}");
     }
 
     #[test]

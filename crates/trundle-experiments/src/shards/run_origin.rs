@@ -22,7 +22,7 @@ impl RunOrigin {
     /// The robot of the experiment: the shards' robot if they stored one, otherwise the robot `given` on the command line.
     ///
     /// # Errors
-    /// Those of `given`, and when the robot file of the shards cannot be accepted.
+    /// Those of `given`, and when the robot file of the shards is invalid.
     pub fn robot(
         &self,
         given: impl FnOnce() -> Result<Option<RobotConfig>, AppError>,

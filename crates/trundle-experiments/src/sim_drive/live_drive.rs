@@ -100,7 +100,8 @@ mod tests {
     use trundle_sim::{LaserConfig, Scene, SimConfig};
 
     fn drive(driver: Option<Box<dyn SimDriver>>) -> (f64, Arc<RunView>) {
-        let config = SimConfig { laser: Some(LaserConfig::default()), ..SimConfig::default() };
+        let mut config = SimConfig::default();
+        config.laser = Some(LaserConfig::default());
         let mut robot = Simulator::new(Scene::by_name("room", 1).unwrap(), config, 1).unwrap();
         let (operator, link) = operator_link();
         operator.send(OperatorCommand::Drive(Twist2::new(0.3, 0.0))).unwrap();

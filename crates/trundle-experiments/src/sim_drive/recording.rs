@@ -20,7 +20,7 @@ pub fn recording_announcement(robot: &Simulator, duration: Option<f64>) -> Strin
     let (camera, config) = (robot.camera(), robot.config());
     let pixels = (camera.width() * camera.height()) as f64;
     let rate = BYTES_PER_PIXEL * pixels * config.camera_rate_hz / 1e6;
-    let total = duration.map_or_else(String::new, |s| format!(", {:.0} MB in {s:.0} s", rate * s));
+    let total = duration.map_or_else(String::new, |s| format!(", {:.0} MB in {s} s", rate * s));
     format!("Records about {rate:.1} MB per second of the robot's time{total}.")
 }
 
@@ -43,7 +43,7 @@ impl<'f> DriveRecording<'f> {
     /// An empty folder for the events of `robot`.
     ///
     /// # Errors
-    /// When the base cannot be accepted, or the disk is short of space.
+    /// When the base is invalid, or the disk is short of space.
     pub fn new(folder: &'f OutputFolder, robot: &Simulator) -> Result<Self, AppError> {
         let config = robot.config();
         let space = FreeSpace::of(&folder.staged(""));

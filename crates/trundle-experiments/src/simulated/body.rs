@@ -48,12 +48,10 @@ pub fn require_free(name: &str, scene: &Scene, pose: Pose2, robot: &RobotConfig)
 /// # Errors
 /// When a number of the robot is outside its range.
 pub fn simulated_body(robot: &RobotConfig, faults: FaultSchedule) -> Result<SimConfig, Invalid> {
-    let mut config = SimConfig {
-        camera: robot.camera,
-        faults,
-        base_from_camera: robot.mount.validated()?.base_from_camera(),
-        ..SimConfig::default()
-    };
+    let mut config = SimConfig::default();
+    config.camera = robot.camera;
+    config.faults = faults;
+    config.base_from_camera = robot.mount.validated()?.base_from_camera();
     config.kobuki.drive = robot.drive;
     config.kobuki.footprint_radius = robot.footprint_radius;
     config.kobuki.footprint = robot.footprint.clone();

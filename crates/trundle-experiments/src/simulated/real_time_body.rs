@@ -144,7 +144,7 @@ fn live(
 fn send(event: &SensorEvent, events: &InboxSender<TimedEvent>) -> Result<(), AppError> {
     let is_image = matches!(event, SensorEvent::Rgbd(_));
     let event = EncodedEvent::encode(event).map_err(|error| AppError::Input(error.to_string()))?;
-    let arrived = TimedEvent { event, at: Instant::now() };
+    let arrived = TimedEvent::now(event);
     events.put(if is_image { InboxItem::Deferred(arrived) } else { InboxItem::Urgent(arrived) });
     Ok(())
 }

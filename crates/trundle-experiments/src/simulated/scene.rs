@@ -51,7 +51,11 @@ impl MeshOptions {
 
     fn import(self) -> GltfOptions {
         let Self { up, scale, floor } = self;
-        GltfOptions { up, scale: scale.unwrap_or(1.0), floor, ..GltfOptions::default() }
+        let mut options = GltfOptions::default();
+        options.up = up;
+        options.scale = scale.unwrap_or(1.0);
+        options.floor = floor;
+        options
     }
 }
 

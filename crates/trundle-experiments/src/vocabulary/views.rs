@@ -88,7 +88,9 @@ fn true_pose(sequence: &TumSequence, stamp: Stamp) -> Option<Pose3> {
 }
 
 fn extractor(features: usize) -> Result<OrbExtractor, AppError> {
-    Ok(OrbExtractor::new(OrbConfig { features, ..OrbConfig::default() })?)
+    let mut config = OrbConfig::default();
+    config.features = features;
+    Ok(OrbExtractor::new(config)?)
 }
 
 /// Renders noisy views of a scene by Kinect V2 and v1 alternately.

@@ -26,6 +26,7 @@ impl Publication {
 
 /// Events of a connection.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum BrokerEvent {
     /// The broker accepted the robot.
     Joined,

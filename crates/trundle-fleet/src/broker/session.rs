@@ -22,6 +22,7 @@ const FAREWELL_TIME: Duration = Duration::from_secs(1);
 
 /// Parts of a session.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct SessionOptions {
     /// Name of this client, unique on a broker.
     pub client_id: String,

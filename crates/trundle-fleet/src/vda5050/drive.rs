@@ -4,7 +4,7 @@ use super::message::OrderNode;
 use crate::robot_commands::RobotCommands;
 use crate::robot_status::RobotStatus;
 use std::time::Duration;
-use trundle_core::Pose2;
+use trundle_core::{Hypotenuse, Pose2};
 use trundle_runtime::{Mission, OperatorCommand, Task, TaskEnd};
 
 /// Time after which a node that was not reached is tried again. Source: ours.
@@ -21,6 +21,7 @@ pub struct Drive {
 
 /// State of a drive.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum DriveEnd {
     /// In execution.
     Open,
@@ -79,6 +80,6 @@ impl Drive {
 fn goal_of(node: &OrderNode, pose: Pose2) -> Option<Pose2> {
     let position = node.node_position.as_ref()?;
     let (dx, dy) = (position.x - pose.x, position.y - pose.y);
-    let heading = if dx.hypot(dy) > f64::EPSILON { dy.atan2(dx) } else { pose.theta };
+    let heading = if dx.hypotenuse(dy) > f64::EPSILON { dy.atan2(dx) } else { pose.theta };
     Some(Pose2::new(position.x, position.y, position.theta.unwrap_or(heading)))
 }

@@ -26,6 +26,7 @@ enum Work {
 
 /// State of an action.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ActionEnd {
     /// In execution.
     Open,

@@ -2,7 +2,7 @@
 
 use super::message::{ErrorReport, Order, OrderNode};
 use super::order_book::OrderBook;
-use trundle_core::{Pose2, difference_of_angles};
+use trundle_core::{Hypotenuse, Pose2, difference_of_angles};
 
 /// Largest distance of the robot from the first node of a new order without an allowed deviation \[m\]. Source: ours, a robot's radius.
 const START_DEVIATION_M: f64 = 0.2;
@@ -68,7 +68,7 @@ fn decide_new(order: &Order, book: &OrderBook, pose: Pose2) -> Result<OrderDecis
 fn stands_at(node: &OrderNode, pose: Pose2) -> bool {
     let Some(position) = &node.node_position else { return false };
     let deviation = position.allowed_deviation_xy.unwrap_or(0.0).max(START_DEVIATION_M);
-    (position.x - pose.x).hypot(position.y - pose.y) <= deviation
+    (position.x - pose.x).hypotenuse(position.y - pose.y) <= deviation
 }
 
 /// Whether a robot is within the allowed deviations of a node. Without allowed deviations the robot must drive to the pose itself.
@@ -78,6 +78,6 @@ pub fn is_within_deviation(node: &OrderNode, pose: Pose2) -> bool {
     let allowed = position.allowed_deviation_xy.unwrap_or(0.0);
     let heading_error = position.theta.map_or(0.0, |theta| difference_of_angles(theta, pose.theta).abs());
     allowed > 0.0
-        && (position.x - pose.x).hypot(position.y - pose.y) <= allowed
+        && (position.x - pose.x).hypotenuse(position.y - pose.y) <= allowed
         && heading_error <= position.allowed_deviation_theta.unwrap_or(0.0).max(f64::EPSILON)
 }

@@ -63,7 +63,7 @@ pub fn dbow2() -> Vec<Vec<u8>> {
 fn trained() -> Vocabulary {
     let images: Vec<Vec<Descriptor>> =
         (1..9_u64).map(|i| (1..9).map(|j| descriptor(i * 31 + j)).collect()).collect();
-    let config = VocabularyConfig { branching: 3, depth: 2, ..Default::default() };
+    let config = VocabularyConfig::of_tree(3, 2);
     Vocabulary::train(&images, &config, 1).expect("invariant: there are descriptors")
 }
 

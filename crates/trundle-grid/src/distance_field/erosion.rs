@@ -40,7 +40,7 @@ impl Erosion {
         self.squared.extend(gaps.of[cols.clone()].iter().map(|gap| height(*gap, gaps.none)));
         let max = self.squared.iter().fold(0.0_f32, |max, own| if *own > max { *own } else { max });
         let farthest = height(gaps.none - 1, gaps.none);
-        let reach = looks(max.min(farthest), gaps.of.len() + 1);
+        let reach = edge_count(max.min(farthest), gaps.of.len() + 1);
         let blocks = cols.len().div_ceil(CELLS_PER_BLOCK);
         self.squared.resize(blocks * CELLS_PER_BLOCK, 0.0);
         self.fill_edges(gaps, cols.start, blocks * CELLS_PER_BLOCK, reach);
@@ -85,9 +85,9 @@ impl Erosion {
 }
 
 /// Number of edges on either side before the foot of a parabola, 2k + 1, is as far as `squared`.
-fn looks(squared: f32, at_most: usize) -> usize {
-    let looks = (squared.sqrt() / 2.0).ceil();
-    ((looks as usize).min(at_most) + 1).next_multiple_of(EDGES_PER_CHECK)
+fn edge_count(squared: f32, at_most: usize) -> usize {
+    let edge_count = (squared.sqrt() / 2.0).ceil();
+    ((edge_count as usize).min(at_most) + 1).next_multiple_of(EDGES_PER_CHECK)
 }
 
 /// Processes the cells from the one with the left edge `edge[at]` on; all have `reach` more edges on either side.

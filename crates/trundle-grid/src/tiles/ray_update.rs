@@ -9,7 +9,7 @@ use super::{
     tile::{NearestObstacle, Tile, TileMap},
 };
 use crate::MapperConfig;
-use trundle_core::{Cell, Pose2};
+use trundle_core::{Cell, Hypotenuse, Pose2};
 
 /// Update of a [`TileMap`] by the rays of one scan: the inverse sensor model in units of the tiles.
 #[derive(Debug, Clone)]
@@ -229,8 +229,11 @@ impl RayUpdateScratch {
         let mut spans = spans.iter().peekable();
         for (k, end) in self.ends.iter().enumerate() {
             let end_at = (end.x, end.y);
-            let blind =
-                if blind > 0.0 { blind / (end.x - origin.0).hypot(end.y - origin.1).max(1e-9) } else { 0.0 };
+            let blind = if blind > 0.0 {
+                blind / (end.x - origin.0).hypotenuse(end.y - origin.1).max(1e-9)
+            } else {
+                0.0
+            };
             let mut stretch = |from: f64, to: f64| {
                 if from < blind {
                     part((origin, end_at, from, to.min(blind))).mark(&mut self.near);

@@ -8,7 +8,11 @@ use trundle_grid::{GridCell, MapperConfig, ScanCells};
 const RESOLUTION: f64 = 0.1;
 
 fn config() -> MapperConfig {
-    MapperConfig { resolution: RESOLUTION, max_range: 5.0, blind_range: 0.0, ..MapperConfig::default() }
+    let mut config = MapperConfig::default();
+    config.resolution = RESOLUTION;
+    config.max_range = 5.0;
+    config.blind_range = 0.0;
+    config
 }
 
 fn any_beam() -> impl Strategy<Value = Beam> {
@@ -68,8 +72,11 @@ proptest! {
     fn a_shorter_largest_range_sees_no_cell_more(pose in any_pose(), scan in any_scan(), max_range in 0.5..5.0_f64) {
         let whole: BTreeSet<_> = rasterised(&config(), pose, &scan).free.into_iter().collect();
         let far = rasterised(&config(), pose, &scan).hits.iter().map(|hit| hit.cell).collect::<BTreeSet<_>>();
-        let cut = rasterised(&MapperConfig { max_range, surface_gap: 0.0, ..config() }, pose, &scan);
-        let without_surfaces = rasterised(&MapperConfig { surface_gap: 0.0, ..config() }, pose, &scan);
+        let mut config = config();
+        config.surface_gap = 0.0;
+        let without_surfaces = rasterised(&config, pose, &scan);
+        config.max_range = max_range;
+        let cut = rasterised(&config, pose, &scan);
         let open: BTreeSet<_> = without_surfaces.free.iter().copied().chain(far).collect();
         prop_assert!(cut.free.iter().all(|cell| open.contains(cell)));
         prop_assert!(cut.hits.len() <= without_surfaces.hits.len());
@@ -91,7 +98,8 @@ fn an_obstacle_within_the_blind_range_hides_the_cells_behind_it() {
         Scan::new(Stamp::default(), Vector2::zeros(), 0.0, 0.1, vec![Beam::Hit { range: 2.05 }]).unwrap();
     let free_columns = |blind_range: f64, obstacle: i32| {
         let mut cells = ScanCells::default();
-        let config = MapperConfig { blind_range, ..config() };
+        let mut config = config();
+        config.blind_range = blind_range;
         cells.rasterise(&config, Pose2::new(0.05, 0.05, 0.0), &scan, |cell| cell.x == obstacle);
         cells.free.len()
     };

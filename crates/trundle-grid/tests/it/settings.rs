@@ -19,7 +19,9 @@ fn every_number_of_the_sensor_model_is_checked() {
     ];
     for (key, unit, low, high, set) in settings {
         // Thresholds that the smallest clamp reaches.
-        let near = MapperConfig { occupied_above: 0.51, free_below: 0.49, ..MapperConfig::default() };
+        let mut near = MapperConfig::default();
+        near.occupied_above = 0.51;
+        near.free_below = 0.49;
         let with = |value: f64| {
             let mut config = near.clone();
             set(&mut config, value);
@@ -36,21 +38,27 @@ fn every_number_of_the_sensor_model_is_checked() {
 #[test]
 fn the_extent_follows_the_resolution_so_that_cells_can_be_counted() {
     let widest = |resolution: f64| {
-        let config = MapperConfig { resolution, half_extent: 1e9, ..MapperConfig::default() };
+        let mut config = MapperConfig::default();
+        config.resolution = resolution;
+        config.half_extent = 1e9;
         config.validated().unwrap_err().expected
     };
     assert_eq!(
         (widest(0.01), widest(0.05), widest(1.0)),
         ("1 to 230".into(), "1 to 1150".into(), "1 to 2000".into())
     );
-    let fine = MapperConfig { resolution: 0.004, ..MapperConfig::default() }.validated().unwrap_err();
+    let mut mapper = MapperConfig::default();
+    mapper.resolution = 0.004;
+    let fine = mapper.validated().unwrap_err();
     assert_eq!(fine.to_string(), "resolution is 0.004 m, expected 0.005 to 1");
 }
 
 #[test]
 fn thresholds_lie_on_their_side_of_one_half() {
     let field = |occupied_above, free_below| {
-        let config = MapperConfig { occupied_above, free_below, ..MapperConfig::default() };
+        let mut config = MapperConfig::default();
+        config.occupied_above = occupied_above;
+        config.free_below = free_below;
         config.validated().map(|_| ()).map_err(|error| error.field)
     };
     assert_eq!(field(0.5, 0.5), Ok(()));

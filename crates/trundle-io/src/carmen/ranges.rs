@@ -10,7 +10,7 @@ pub(super) fn is_range(range: f64) -> bool {
 /// Readings so far below the greatest are the limit too, m. Source: ours.
 const LIMIT_BAND_M: f64 = 0.25;
 
-/// The range from which a beam of a laser with this limit has no return, m, at least 0.
+/// The smallest range at which a beam of a laser with this limit has no return, m, at least 0.
 pub(super) fn no_return_from(limit: f64) -> f64 {
     (limit - LIMIT_BAND_M).max(0.0)
 }

@@ -52,7 +52,7 @@ impl TextLines {
     fn read_line(&mut self) -> Result<bool, IoError> {
         self.buffer.clear();
         let mut limited = self.reader.by_ref().take(MAX_LINE_BYTES);
-        match limited.read_until(b'\n', &mut self.buffer) {
+        match read_to_line_end(&mut limited, &mut self.buffer) {
             Ok(0) => return Ok(false),
             Ok(_) => self.number += 1,
             Err(error) if self.is_compressed => {
@@ -71,6 +71,34 @@ impl TextLines {
     fn text(&self) -> Result<&str, IoError> {
         std::str::from_utf8(&self.buffer)
             .map_err(|_| IoError::line(&self.path, self.number, "is not UTF-8 text"))
+    }
+}
+
+/// Appends a line to `buffer`, its end as LF: LF, CR LF, or CR alone. Returns the length of the line \[bytes\]; 0 at the end.
+fn read_to_line_end(reader: &mut impl BufRead, buffer: &mut Vec<u8>) -> std::io::Result<usize> {
+    loop {
+        let available = match reader.fill_buf() {
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            available => available?,
+        };
+        let Some(at) = available.iter().position(|byte| matches!(byte, b'\n' | b'\r')) else {
+            let len = available.len();
+            if len == 0 {
+                return Ok(buffer.len());
+            }
+            buffer.extend_from_slice(available);
+            reader.consume(len);
+            continue;
+        };
+        let is_cr = available[at] == b'\r';
+        buffer.extend_from_slice(&available[..at]);
+        buffer.push(b'\n');
+        reader.consume(at + 1);
+        // An error behind the line is that of the next line.
+        if is_cr && reader.fill_buf().is_ok_and(|rest| rest.first() == Some(&b'\n')) {
+            reader.consume(1);
+        }
+        return Ok(buffer.len());
     }
 }
 
@@ -122,6 +150,8 @@ mod tests {
         assert_eq!(found, [(2, "a b".to_owned()), (4, "c".to_owned())]);
         assert_eq!(lines("\u{feff}a".into()).unwrap(), [(1, "a".to_owned())]);
         assert_eq!(lines(Vec::new()).unwrap(), []);
+        let of_old_mac = lines(b"a\r# c\r\rb\r\nd\r".to_vec()).unwrap();
+        assert_eq!(of_old_mac, [(1, "a".to_owned()), (4, "b".to_owned()), (5, "d".to_owned())]);
     }
 
     #[test]

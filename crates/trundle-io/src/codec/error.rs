@@ -5,6 +5,7 @@ use trundle_core::Invalid;
 
 /// Reason why an image cannot be decoded or encoded.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum CodecError {
     /// The bytes are not an image, or not a whole one.
     #[error("{kind} image cannot be decoded: {problem}")]

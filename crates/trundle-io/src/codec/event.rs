@@ -50,6 +50,7 @@ impl EncodedRgbd {
 /// A [`SensorEvent`] in its recorded form. Give the robot the result of `encode` and then `decode`, and a replay of
 /// the recording feeds it the very same.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum EncodedEvent {
     /// Wheel encoders.
     Wheels(WheelTicks),

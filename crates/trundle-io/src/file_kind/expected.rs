@@ -28,6 +28,8 @@ pub enum Expected {
     Toml,
     /// Way-points and lanes.
     Graph,
+    /// Zones and places of a map.
+    Annotations,
     /// A saved particle filter.
     FilterMap,
     /// A map to be found in: a saved particle filter, or a map by its YAML file.
@@ -105,6 +107,7 @@ impl Expected {
                 K::OrbSlamYaml,
                 K::StellaVslamYaml,
                 K::RosCameraYaml,
+                K::KalibrCameraYaml,
                 K::Open3dCamera,
                 K::Toml,
                 K::Yaml,
@@ -115,7 +118,7 @@ impl Expected {
                 &[K::TumTrajectory, K::PlanarTrajectory, K::KittiTrajectory, K::EurocTrajectory, K::Text]
             }
             Self::Toml => &[K::Toml, K::CameraToml, K::Text, K::Empty],
-            Self::Graph => &[K::GeoJson, K::Json, K::Text],
+            Self::Graph | Self::Annotations => &[K::GeoJson, K::Json, K::Text],
             Self::FilterMap => &[K::FilterMap],
             Self::LocalizationMap => &[K::FilterMap, K::MapYaml],
             Self::VisualMap => &[K::VisualMap],
@@ -135,10 +138,13 @@ impl Expected {
                 "a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt), a ROS bag or a trundle recording"
             }
             Self::Recording => "a trundle recording (recording.mcap)",
-            Self::Camera => "a camera file (TOML, ORB-SLAM's, stella_vslam's or ROS's YAML, Open3D's JSON)",
+            Self::Camera => {
+                "a camera file (TOML, ORB-SLAM's, stella_vslam's, Kalibr's or ROS's YAML, Open3D's JSON)"
+            }
             Self::Trajectory => "a trajectory (TUM, KITTI or EuRoC form)",
             Self::Toml => "a TOML file",
             Self::Graph => "a GeoJSON file of way-points",
+            Self::Annotations => "a GeoJSON file of zones and places",
             Self::FilterMap => "a saved filter (filter.map of `trundle map`)",
             Self::LocalizationMap => "a saved filter (filter.map of `trundle map`) or a map's YAML file",
             Self::VisualMap => "a visual map (visual.map of `trundle slam`)",

@@ -34,6 +34,7 @@ pub enum FileKind {
     OrbSlamYaml,
     StellaVslamYaml,
     RosCameraYaml,
+    KalibrCameraYaml,
     Open3dCamera,
     CarmenLog,
     TumTrajectory,

@@ -41,7 +41,8 @@ fn binary_files_by_their_first_bytes() {
         (b"glTF\x02\0\0\0", K::Glb),
         (b"\x7fELF\x02\x01", K::Executable),
         (b"\0\x01\x02", K::Binary),
-        (b"caf\xe9 au lait", K::Binary),
+        (b"caf\xe9 au lait", K::Text),
+        (b"\xe9\xa0\xff\xfe\x80 caf\xe9", K::Binary),
         (b"", K::Empty),
     ] {
         assert_eq!(of(bytes), kind, "{bytes:?}");
@@ -82,6 +83,7 @@ fn text_files_by_their_first_lines() {
         ("Camera:\n  name: a\n  fx: 500\n  fy: 500\n", K::StellaVslamYaml),
         ("image_width: 640\ncamera_matrix:\n  data: [1, 0, 0]\n", K::RosCameraYaml),
         ("height: 4\nwidth: 4\ndistortion_model: plumb_bob\nk: [1]\n", K::RosCameraYaml),
+        ("cam0:\n  camera_model: pinhole\n  intrinsics: [1, 2, 3, 4]\n", K::KalibrCameraYaml),
         ("{\"width\": 640, \"intrinsic_matrix\": [1]}", K::Open3dCamera),
         ("width = 640\nfx = 500\nfy = 500.0\n", K::CameraToml),
         ("# a robot\n[schedule]\nmap_hz = 2\n", K::Toml),

@@ -1,6 +1,8 @@
 //! Recognition of text files by their first lines.
 
 use super::FileKind;
+use crate::files::with_line_ends;
+use std::borrow::Cow;
 
 /// First words of the lines of a CARMEN log.
 const CARMEN_WORDS: [&str; 12] = [
@@ -24,10 +26,14 @@ const MAP_KEYS: [&str; 6] = ["image", "resolution", "origin", "negate", "occupie
 /// Number of lines that are inspected. A kind whose marks come later is not recognised. Source: ours.
 const INSPECTED_LINES: usize = 60;
 
+/// Number of bytes of a text with one that is not UTF-8, on average. With more of them a file is binary. Source: ours.
+const MIN_BYTES_A_FOREIGN_ONE: usize = 30;
+
 /// The kind of a file of text, else `Binary`.
 pub(super) fn kind_of(head: &[u8]) -> FileKind {
     let Some(text) = as_text(head) else { return FileKind::Binary };
-    let text = text.trim_start_matches('\u{feff}');
+    let text = with_line_ends(text.trim_start_matches('\u{feff}'));
+    let text = text.as_ref();
     let lines: Vec<&str> = text.lines().map(str::trim).take(INSPECTED_LINES).collect();
     let content: Vec<&str> =
         lines.iter().copied().filter(|line| !line.is_empty() && !line.starts_with('#')).collect();
@@ -45,16 +51,14 @@ pub(super) fn kind_of(head: &[u8]) -> FileKind {
     }
 }
 
-/// The text of the bytes, if they are text; the last character may be truncated.
-fn as_text(head: &[u8]) -> Option<&str> {
-    let text = match std::str::from_utf8(head) {
-        Ok(text) => text,
-        Err(error) if error.error_len().is_none() => {
-            std::str::from_utf8(&head[..error.valid_up_to()]).unwrap_or_default()
-        }
-        Err(_) => return None,
-    };
-    (!text.contains('\0')).then_some(text)
+/// The text of the bytes, if they are text; the last character may be truncated. A few bytes may be of another encoding (a comment in
+/// Latin-1): the reader of the file then names their line.
+fn as_text(head: &[u8]) -> Option<Cow<'_, str>> {
+    let is_control = |byte: &u8| *byte < b' ' && !byte.is_ascii_whitespace();
+    let text = String::from_utf8_lossy(head);
+    let foreign = text.chars().filter(|c| *c == char::REPLACEMENT_CHARACTER).count();
+    let is_text = foreign <= 1 + head.len() / MIN_BYTES_A_FOREIGN_ONE && !head.iter().any(is_control);
+    is_text.then_some(text)
 }
 
 fn of_json(text: &str) -> FileKind {
@@ -94,6 +98,8 @@ fn of_yaml(lines: &[&str]) -> Option<FileKind> {
         Some(FileKind::RosBagMetadata)
     } else if lines.iter().any(|line| line.starts_with("Camera.") || line.starts_with("Camera1.")) {
         Some(FileKind::OrbSlamYaml)
+    } else if any(&["cam0", "camera_model", "distortion_coeffs", "sensor_type"]) {
+        Some(FileKind::KalibrCameraYaml)
     } else if any(&["camera_matrix", "projection_matrix", "distortion_model", "K", "k"])
         && any(&["image_width", "image_height", "width", "height", "camera_matrix"])
     {

@@ -13,17 +13,17 @@ const WORDS: &[(FileKind, &str, &str)] = &[
     (
         K::Ros2Mcap,
         "a ROS 2 bag (MCAP)",
-        "`trundle map` reads its laser scans, `slam` and `map` its RGB-D images",
+        "`trundle map` reads its laser scans, `slam`, `map` and `replay` its RGB-D images",
     ),
     (
         K::Ros2Sqlite,
         "a ROS 2 bag (SQLite)",
-        "`trundle map` reads its laser scans, `slam` and `map` its RGB-D images",
+        "`trundle map` reads its laser scans, `slam`, `map` and `replay` its RGB-D images",
     ),
     (
         K::Ros2BagFolder,
         "the folder of a ROS 2 bag",
-        "`trundle map` reads its laser scans, `slam` and `map` its RGB-D images",
+        "`trundle map` reads its laser scans, `slam`, `map` and `replay` its RGB-D images",
     ),
     (K::RosBagMetadata, "the metadata of a ROS 2 bag", "give the bag's folder to `trundle map` or `slam`"),
     (
@@ -54,6 +54,7 @@ const WORDS: &[(FileKind, &str, &str)] = &[
     (K::OrbSlamYaml, "a settings file of ORB-SLAM", "it goes with --camera"),
     (K::StellaVslamYaml, "a settings file of stella_vslam", "it goes with --camera"),
     (K::RosCameraYaml, "a camera_info file of ROS", "it goes with --camera"),
+    (K::KalibrCameraYaml, "a calibration of Kalibr or EuRoC", "it goes with --camera"),
     (K::Open3dCamera, "a camera file of Open3D", "it goes with --camera"),
     (K::CarmenLog, "a CARMEN log", "`trundle map` reads it"),
     (K::TumTrajectory, "a TUM trajectory", "`trundle eval` compares it with another"),
@@ -71,7 +72,11 @@ const WORDS: &[(FileKind, &str, &str)] = &[
     (K::OtherMesh, "a scene or robot description of another program", MESH_REMEDY),
     (K::PointCloud, "a point cloud", ""),
     (K::Toml, "a TOML file", ""),
-    (K::GeoJson, "a GeoJSON file", "it goes with `trundle plan --graph`"),
+    (
+        K::GeoJson,
+        "a GeoJSON file",
+        "a graph goes with `trundle plan --graph`, zones and places with --zones of `trundle run`",
+    ),
     (K::Json, "a JSON file", ""),
     (K::Xml, "an XML file", ""),
     (K::Yaml, "a YAML file", ""),

@@ -6,7 +6,7 @@ use trundle_core::Beam;
 /// Median of the ranges of a log \[m\]. A larger median means another unit. Source: ours; the medians of the shared logs are below 10 m,
 /// and no indoor laser reaches far beyond 80 m (SICK LMS200).
 const MAX_MEDIAN_RANGE_M: f64 = 50.0;
-/// Median of the ranges \[m\] from which on centimetres are ruled out: a room would be 10 m and more around the robot. Source: ours.
+/// Median of the ranges \[m\] above which the unit is not the centimetre: a room would be 10 m and more around the robot. Source: ours.
 const MAX_CENTIMETRE_MEDIAN: f64 = 1000.0;
 /// Median distance by odometry between two scans \[m\]. A larger median means another unit. Source: ours.
 const MAX_MEDIAN_STEP_M: f64 = 3.0;
@@ -41,7 +41,7 @@ pub fn no_overlap_cause(log: &LaserLog) -> String {
         return no_return_cause(log);
     }
     range_unit_hint(log).or_else(|| odometry_unit_hint(log)).unwrap_or_else(|| {
-        "are ranges and odometry of one robot, both in metres, and is the laser mounted as the log says?"
+        "are ranges and odometry of one robot, both in metres, and is the laser mounted as in the log?"
             .to_owned()
     })
 }

@@ -4,6 +4,7 @@ use trundle_core::{Invalid, require_finite, require_in, require_positive};
 
 /// Data that a log lacks, and the topics that are read.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct LaserLogOptions {
     /// Distance of the laser ahead of the base, m. Default: the log's, from the poses of a CARMEN log's lines, else its
     /// `PARAM robot_frontlaser_offset`, else 0; from the transforms of a bag.

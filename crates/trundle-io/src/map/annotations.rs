@@ -1,5 +1,6 @@
 //! Zones and named places of a map: a GeoJSON file.
 
+use super::degrees_hint;
 use crate::excerpt::excerpt;
 use crate::files::read_text;
 use crate::{Expected, IoError};
@@ -22,9 +23,9 @@ use trundle_core::{MapAnnotations, NamedPlace, Pose2, Zone, ZoneKind};
 /// ```
 ///
 /// # Errors
-/// When the file cannot be read, is no such JSON, or a zone or place cannot be accepted. Names the feature.
+/// When the file cannot be read, is no such JSON, or a zone or place is invalid. Names the feature.
 pub fn read_annotations(path: &Path) -> Result<MapAnnotations, IoError> {
-    Expected::Graph.check(path)?;
+    Expected::Annotations.check(path)?;
     let text = read_text(path)?;
     let value: Value = serde_json::from_str(&text).map_err(|error| {
         let problem =
@@ -140,6 +141,9 @@ fn outline(coordinates: &Value) -> Result<Vec<[f64; 2]>, String> {
         return Err(format!("the polygon has {} rings, expected one: a zone has no holes", rings.len()));
     };
     let mut corners = ring.iter().map(point).collect::<Result<Vec<_>, _>>()?;
+    if let Some(problem) = degrees_hint(&corners) {
+        return Err(problem);
+    }
     if corners.len() < 4 || corners.first() != corners.last() {
         return Err("the ring of the polygon is open, expected the first point again at its end".to_owned());
     }
@@ -152,6 +156,9 @@ fn point(value: &Value) -> Result<[f64; 2], String> {
     let numbers: Vec<Option<f64>> = coordinates.iter().map(Value::as_f64).collect();
     match numbers[..] {
         [Some(x), Some(y)] => Ok([x, y]),
+        [Some(_), Some(_), Some(_)] => {
+            Err(format!("a point is {} with a height, expected [x, y] (m): the map is flat", shown(value)))
+        }
         _ => Err(format!("a point is {}, expected [x, y] (m)", shown(value))),
     }
 }
@@ -228,6 +235,16 @@ mod tests {
                 "z.geojson: feature 4: geometry is \"LineString\", expected a Point",
             ),
             (
+                "[2.0,0.0]",
+                "[2.0,0.0,0.5]",
+                "z.geojson: feature 1: a point is [2.0,0.0,0.5] with a height, expected [x, y] (m): the map is flat",
+            ),
+            (
+                "[[0.0,0.0],[2.0,0.0],[2.0,1.25],[0.0,0.0]]",
+                "[[8.54,47.37],[8.5401,47.37],[8.5401,47.3701],[8.54,47.37]]",
+                "z.geojson: feature 1: all points lie within 0.1 mm: are they longitude and latitude in degrees? expected x and y of the map in m",
+            ),
+            (
                 ",[0.0,0.0]]]",
                 "]]",
                 "z.geojson: feature 1: the ring of the polygon is open, expected the first point again at its end",
@@ -238,6 +255,8 @@ mod tests {
         }
         assert!(read("{\"type\": \"FeatureCollection\"}").unwrap_err().contains("expected a GeoJSON"));
         assert!(read("{\n\"features\": [,]}").unwrap_err().starts_with("z.geojson, line 2: is not JSON"));
-        assert!(read("").is_err() && read("[]").is_err() && read("{\"features\": 3}").is_err());
+        let empty = read("").unwrap_err();
+        assert!(empty.contains("expected a GeoJSON file of zones and places"), "{empty}");
+        assert!(read("[]").is_err() && read("{\"features\": 3}").is_err());
     }
 }

@@ -58,7 +58,7 @@ impl Feature {
         let ends = ["startid", "endid"].map(|name| !self.properties[name].is_null());
         match (self.kind(), self.id()) {
             ("Point", Some(id)) => Role::Node(id),
-            ("Point", None) => Role::Other("Point without id".to_owned()),
+            ("Point", None) => Role::Other(POINT_WITHOUT_ID.to_owned()),
             ("MultiLineString" | "LineString", id) if ends.contains(&true) => {
                 Role::Lane(id.unwrap_or_else(|| "without id".to_owned()))
             }
@@ -69,6 +69,9 @@ impl Feature {
         }
     }
 }
+
+/// Kind of a Point that is no node.
+const POINT_WITHOUT_ID: &str = "Point without id";
 
 /// Maximum length of a kind's name, in characters; the rest is cut. Source: ours.
 const MAX_KIND_CHARS: usize = 40;
@@ -114,10 +117,20 @@ pub fn read_graph(path: &Path) -> Result<GraphFile, IoError> {
         }
     }
     if nodes.is_empty() {
-        return Err(IoError::malformed(path, "there is no node: no feature is a Point"));
+        return Err(IoError::malformed(path, no_node(collection.features.len(), left.get(POINT_WITHOUT_ID))));
     }
     let lanes = lanes.iter().map(|(id, properties)| lane(path, id, properties, &places));
     Ok(GraphFile { lanes: lanes.collect::<Result<_, _>>()?, nodes, left })
+}
+
+/// The problem of a file with this number of features, none of which is a node.
+fn no_node(features: usize, points_without_id: Option<&usize>) -> String {
+    let cause = match points_without_id {
+        _ if features == 0 => "the list `features` is empty".to_owned(),
+        Some(count) => format!("{count} Points have no id"),
+        None => "no feature is a Point".to_owned(),
+    };
+    format!("there is no node: {cause}, expected Points with a number or text `id`")
 }
 
 fn refused(path: &Path, error: &serde_json::Error) -> IoError {
@@ -214,8 +227,10 @@ mod tests {
         }
         assert_eq!(
             read(r#"{"features": []}"#).unwrap_err(),
-            "g.geojson: there is no node: no feature is a Point"
+            "g.geojson: there is no node: the list `features` is empty, expected Points with a number or text `id`"
         );
+        let without_id = read(&GRAPH.replace("\"id\"", "\"number\"")).unwrap_err();
+        assert!(without_id.contains("there is no node: 2 Points have no id, expected"), "{without_id}");
         assert!(read("{\n\"features\": 3}").unwrap_err().starts_with("g.geojson, line 2: "));
         assert!(read("").is_err() && read("[]").is_err());
         let broken = read("{\n\"features\": [,]}").unwrap_err();

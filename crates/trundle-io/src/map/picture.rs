@@ -29,8 +29,7 @@ impl Picture {
             Ok(ImageFormat::Pnm) if FileKind::of_bytes(bytes, bytes.len() as u64) != FileKind::Netpbm => {
                 of_pgm(bytes)
             }
-            Ok(_) => Err(other_picture(bytes)),
-            Err(_) => Err("no picture, expected a PGM, PNG or BMP".to_owned()),
+            Ok(_) | Err(_) => Err(other_picture(bytes)),
         };
         picture.map_err(|problem| IoError::malformed(path, problem))
     }
@@ -230,7 +229,10 @@ mod tests {
     #[test]
     fn a_picture_of_another_kind_is_named() {
         let problem = |bytes: &[u8]| Picture::parse(Path::new("m.png"), bytes).unwrap_err().to_string();
-        assert_eq!(problem(b"hello"), "m.png: no picture, expected a PGM, PNG or BMP");
+        assert_eq!(
+            problem(b"hello"),
+            "m.png: this is a text file of no known kind, expected a PGM, PNG or BMP; save it as PNG or PGM"
+        );
         assert_eq!(
             problem(b"\xff\xd8\xff\xe0"),
             "m.png: this is a JPEG picture, expected a PGM, PNG or BMP; save it as PNG or PGM"

@@ -1,11 +1,20 @@
 //! Rotated pictures, resampled on a lattice along the map's axes.
 
+use std::f64::consts::FRAC_PI_2;
 use trundle_core::{GridGeometry, Invalid, Vector2};
 
 /// Samples along a cell's side. Source: ours.
 const SAMPLES_PER_SIDE: usize = 3;
 /// Largest turn of a map that counts as no turn, rad: 1 um at 10 km. Source: ours.
 const MAX_STRAIGHT_TURN_RAD: f64 = 1e-10;
+/// Largest distance of a map's yaw from a right angle at which its cells are still copied one to one \[rad\]: 1 mm at 100 m. Source: ours.
+const MAX_COPIED_TURN_RAD: f64 = 1e-5;
+
+/// Whether a picture with this yaw is resampled, so that its walls may become thicker.
+pub(super) fn is_resampled(yaw: f64) -> bool {
+    let quarters = yaw / FRAC_PI_2;
+    ((quarters - quarters.round()) * FRAC_PI_2).abs() > MAX_COPIED_TURN_RAD
+}
 
 /// The values of a picture with this geometry, rotated by `yaw` rad around its origin, on cells along the axes with the same resolution. A
 /// new cell gets the value that is first by `rank` among those it touches: walls remain closed, and become up to a cell thicker. Cells
@@ -37,7 +46,7 @@ pub(super) fn straightened<T: Copy>(
     let picture = GridGeometry { origin: Vector2::zeros(), ..geometry };
     let value = |linear: usize| {
         let cell = new.cell(linear);
-        let looks = (0..SAMPLES_PER_SIDE * SAMPLES_PER_SIDE).filter_map(|k| {
+        let samples = (0..SAMPLES_PER_SIDE * SAMPLES_PER_SIDE).filter_map(|k| {
             let part = |k: usize| (k as f64 + 0.5) / SAMPLES_PER_SIDE as f64;
             let at = Vector2::new(
                 cell.col as f64 + part(k % SAMPLES_PER_SIDE),
@@ -47,7 +56,7 @@ pub(super) fn straightened<T: Copy>(
             let back = Vector2::new(cos * at.x + sin * at.y, cos * at.y - sin * at.x);
             picture.cell_at(back).map(|cell| values[picture.linear(cell)])
         });
-        looks.min_by_key(|value| rank(*value)).unwrap_or(beyond)
+        samples.min_by_key(|value| rank(*value)).unwrap_or(beyond)
     };
     Ok((new, (0..new.len()).map(value).collect()))
 }

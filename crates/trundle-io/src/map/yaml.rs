@@ -1,6 +1,7 @@
 //! Parser of the YAML file of a map_server map.
 
 use crate::IoError;
+use crate::excerpt::excerpt;
 use crate::yaml_document::{YamlDocument, YamlValue};
 use std::path::Path;
 use trundle_core::{Cell, Invalid, Vector2, require_finite, require_in, require_positive};
@@ -10,8 +11,8 @@ const UNKNOWN_GREY: u32 = 205;
 
 /// Smallest side of a cell \[m\]: the noise of a laser is larger. Source: ours.
 pub const MIN_CELL_M: f64 = 0.001;
-/// Largest side of a cell \[m\]: a room. Source: ours.
-pub const MAX_CELL_M: f64 = 10.0;
+/// Largest side of a cell \[m\]: no robot drives by larger ones. Source: ours.
+pub const MAX_CELL_M: f64 = 2.0;
 
 /// The checked content of a map's YAML file.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +46,7 @@ impl MapYaml {
 
     /// The checked fields of a document.
     pub fn of(document: &YamlDocument<'_>) -> Result<Self, IoError> {
-        let image = document.text("image", "the name of the map's picture")?.to_owned();
+        let image = image_name(document)?.to_owned();
         let resolution = document.number("resolution", "metres a cell, as 0.05")?;
         let origin = document.numbers("origin", ORIGIN)?;
         let negate = negate(document)?;
@@ -117,6 +118,16 @@ impl MapYaml {
 /// Form of `origin`.
 const ORIGIN: &str = "[x, y, yaw] (m, m, rad)";
 
+/// The name of the picture's file, in or below any folder.
+fn image_name<'d>(document: &'d YamlDocument<'_>) -> Result<&'d str, IoError> {
+    let expected = "the name of the map's picture";
+    let name = document.text("image", expected)?;
+    match Path::new(name).file_name() {
+        Some(_) => Ok(name),
+        None => Err(document.invalid(Invalid::new("image", format!("'{}'", excerpt(name)), "", expected))),
+    }
+}
+
 fn negate(document: &YamlDocument<'_>) -> Result<bool, IoError> {
     match document.require("negate", "0 or 1")? {
         YamlValue::Bool(negate) => Ok(*negate),
@@ -164,7 +175,11 @@ fn raw(value: u16, maxval: u16) -> u16 {
 /// The side of a cell, if it is one of a map of a floor: others are in a wrong unit, or would make a plan endless.
 fn of_a_floor(resolution: f64) -> Result<f64, Invalid> {
     require_positive("resolution", resolution, "m")?;
-    require_in("resolution", resolution, "m", MIN_CELL_M, MAX_CELL_M)
+    require_in("resolution", resolution, "m", MIN_CELL_M, MAX_CELL_M).map_err(|invalid| {
+        let hint = if resolution > MAX_CELL_M { "; is it in centimetres or millimetres?" } else { "" };
+        let expected = format!("{}{hint}", invalid.expected);
+        Invalid { expected, ..invalid }
+    })
 }
 
 #[cfg(test)]
@@ -220,8 +235,13 @@ mod tests {
     fn wrong_values_are_named() {
         for (from, to, line, problem) in [
             ("0.050000", "-1", 2, "resolution is -1 m, expected a finite number above 0"),
-            ("0.050000", "1e-300", 2, "resolution is 1e-300 m, expected 0.001 to 10"),
-            ("0.050000", "50", 2, "resolution is 50 m, expected 0.001 to 10"),
+            ("0.050000", "1e-300", 2, "resolution is 1e-300 m, expected 0.001 to 2"),
+            (
+                "0.050000",
+                "50",
+                2,
+                "resolution is 50 m, expected 0.001 to 2; is it in centimetres or millimetres?",
+            ),
             ("0.050000", ".nan", 2, "resolution is '.nan', expected metres a cell, as 0.05"),
             ("0.050000", "fine", 2, "resolution is 'fine', expected metres a cell, as 0.05"),
             (

@@ -34,19 +34,33 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// Creates a hidden folder in the folder `beside` for the results of `target`.
+    /// Creates a hidden folder in the folder `beside` for the results of `target`. Hidden folders there that killed runs into the same
+    /// place left are named in the log, and removed.
     ///
     /// # Errors
-    /// When the folder cannot be created, or the disk has no space for the marker of the results.
+    /// When the folder cannot be created.
     pub(super) fn create(beside: &Path, target: &Path) -> io::Result<Self> {
+        sweep(beside, target);
         let dir = unfinished::begin(|| tempfile::Builder::new().prefix(PREFIX).tempdir_in(beside))?;
         let mut owner = File::create(dir.path().join(OWNER_FILE))?;
         // Without locks on the file system, no hidden folder is removed either.
         let _ = owner.try_lock();
         owner.write_all(resolved(target).to_string_lossy().as_bytes())?;
         fs::create_dir(dir.path().join(STAGE))?;
-        reserve(&dir.path().join(RESERVE_FILE))?;
         Ok(Self { dir, _owner: owner })
+    }
+
+    /// This hidden folder, with space on the disk that is kept for the marker of the results. Only a full disk is an error: a limit of the
+    /// length of a file lets the marker through, which is short.
+    ///
+    /// # Errors
+    /// When the disk has no space for the marker.
+    pub(super) fn with_reserve(self) -> io::Result<Self> {
+        use io::ErrorKind::{QuotaExceeded, StorageFull};
+        match fs::write(self.dir.path().join(RESERVE_FILE), vec![0; RESERVE_BYTES]) {
+            Err(error) if [StorageFull, QuotaExceeded].contains(&error.kind()) => Err(error),
+            _ => Ok(self),
+        }
     }
 
     /// The folder that holds the results.
@@ -81,12 +95,9 @@ impl Scratch {
     }
 }
 
-/// Keeps space for the marker. Only a full disk is an error: a limit of the length of a file lets the marker through, which is short.
-fn reserve(path: &Path) -> io::Result<()> {
-    use io::ErrorKind::{QuotaExceeded, StorageFull};
-    match fs::write(path, vec![0; RESERVE_BYTES]) {
-        Err(error) if [StorageFull, QuotaExceeded].contains(&error.kind()) => Err(error),
-        _ => Ok(()),
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        self.remove();
     }
 }
 
@@ -96,12 +107,14 @@ pub(super) fn is_scratch(path: &Path) -> bool {
     name.starts_with(PREFIX) && path.join(OWNER_FILE).is_file()
 }
 
-/// Removes the hidden folders in `beside` left by killed runs into `target`; returns their paths. The folder of a running run remains.
-pub(super) fn sweep(beside: &Path, target: &Path) -> Vec<PathBuf> {
+/// Removes the hidden folders in `beside` left by killed runs into `target`, and logs them. The folder of a running run remains.
+fn sweep(beside: &Path, target: &Path) {
     let place = resolved(target);
     let entries = fs::read_dir(beside).into_iter().flatten().flatten();
     let left = entries.map(|entry| entry.path()).filter(|path| is_left_behind(path, &place));
-    left.filter(|path| fs::remove_dir_all(path).is_ok()).collect()
+    left.filter(|path| fs::remove_dir_all(path).is_ok()).for_each(|path| {
+        tracing::warn!("{} was left by a run that was killed; it is removed", path.display());
+    });
 }
 
 fn is_left_behind(path: &Path, place: &Path) -> bool {
@@ -113,22 +126,44 @@ fn is_left_behind(path: &Path, place: &Path) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{InputFiles, OutputFile, OutputFolder, replace_file};
     use super::*;
+
+    /// A hidden folder for `target` as a killed run leaves it.
+    fn dead(beside: &Path, target: &Path) -> PathBuf {
+        let path = Scratch::create(beside, target).unwrap().dir.path().with_extension("dead");
+        fs::create_dir(&path).unwrap();
+        fs::write(path.join(OWNER_FILE), resolved(target).to_string_lossy().as_bytes()).unwrap();
+        path
+    }
+
+    #[test]
+    fn results_of_every_kind_sweep_what_a_killed_run_into_their_place_left() {
+        let kinds: [fn(&Path); 3] = [
+            |path| drop(OutputFolder::create(path).unwrap()),
+            |path| {
+                OutputFile::create_apart_from(&InputFiles::default(), path).unwrap().write(b"1").unwrap();
+            },
+            |path| replace_file(path, b"2").unwrap(),
+        ];
+        let beside = tempfile::tempdir().unwrap();
+        for (i, write) in kinds.iter().enumerate() {
+            let target = beside.path().join(format!("result-{i}"));
+            let left = dead(beside.path(), &target);
+            write(&target);
+            assert!(!left.exists(), "kind {i}");
+        }
+        assert_eq!(fs::read_dir(beside.path()).unwrap().count(), 2, "two files, and nothing hidden");
+    }
 
     #[test]
     fn only_what_a_dead_run_into_the_same_place_left_is_swept() {
         let beside = tempfile::tempdir().unwrap();
         let (target, other) = (beside.path().join("run"), beside.path().join("run-2"));
         let alive = Scratch::create(beside.path(), &target).unwrap();
-        let dead = |target: &Path| {
-            let path = Scratch::create(beside.path(), target).unwrap().dir.path().with_extension("dead");
-            fs::create_dir(&path).unwrap();
-            fs::write(path.join(OWNER_FILE), resolved(target).to_string_lossy().as_bytes()).unwrap();
-            path
-        };
-        let (ours, theirs) = (dead(&target), dead(&other));
+        let (ours, theirs) = (dead(beside.path(), &target), dead(beside.path(), &other));
         fs::create_dir(beside.path().join(".trundle-by-hand")).unwrap();
-        assert_eq!(sweep(beside.path(), &target), std::slice::from_ref(&ours));
+        sweep(beside.path(), &target);
         assert!(!ours.exists() && theirs.exists() && alive.stage().exists());
         assert!(beside.path().join(".trundle-by-hand").exists());
     }

@@ -37,7 +37,7 @@ impl OutputFile {
         let scratch = fs::create_dir_all(beside).and_then(|()| Scratch::create(beside, path));
         let scratch = scratch.map_err(|error| {
             remove_empty(&mut made);
-            IoError::system(path, "create")(error)
+            IoError::system(path, "write")(error)
         })?;
         Ok(Self { path: path.to_owned(), scratch: Some(scratch), made })
     }

@@ -6,14 +6,38 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 /// Length of the magic number at both ends of an MCAP file \[bytes\].
-const MAGIC_BYTES: u64 = mcap::MAGIC.len() as u64;
+pub(super) const MAGIC_BYTES: u64 = mcap::MAGIC.len() as u64;
+
+/// Position at which a recording was cut, or is damaged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RecordingCut {
+    /// Length of the file, or position of the damaged part \[bytes\].
+    pub byte: u64,
+    /// Whether the file goes on behind this position.
+    pub is_damage: bool,
+}
+
+impl RecordingCut {
+    /// The cut in one sentence; `seconds`: duration of the data before the cut.
+    #[must_use]
+    pub fn report(&self, seconds: f64) -> String {
+        format!("the recording {}; {seconds:.2} s of it were read", self.place())
+    }
+
+    /// The kind and the position of the cut: the predicate of a sentence about the file.
+    #[must_use]
+    pub fn place(&self) -> String {
+        let verb = if self.is_damage { "is damaged" } else { "was cut" };
+        format!("{verb} at byte {}", self.byte)
+    }
+}
 
 /// The part of a file that is whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct WholePart {
     /// End of the last whole record outside of chunks \[bytes\].
     pub end: u64,
-    /// Whether the file ends before its end mark.
+    /// Whether the file ends without its end mark.
     pub is_cut: bool,
 }
 
@@ -44,8 +68,11 @@ pub(super) fn whole_part(file: &mut File, len: u64) -> io::Result<WholePart> {
         reader.seek(SeekFrom::Start(end))?;
     }
     drop(reader);
+    let mut mark = Vec::new();
+    file.seek(SeekFrom::Start(len - MAGIC_BYTES))?;
+    file.read_to_end(&mut mark)?;
     file.rewind()?;
-    let is_whole = opcode == op::FOOTER && len - end >= MAGIC_BYTES;
+    let is_whole = mark == mcap::MAGIC && len - end >= MAGIC_BYTES;
     Ok(if is_whole { WHOLE } else { WholePart { end, is_cut: true } })
 }
 

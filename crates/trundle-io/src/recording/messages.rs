@@ -239,7 +239,7 @@ impl TryFrom<BodyEventMessage> for EncodedEvent {
     type Error = Invalid;
 
     fn try_from(m: BodyEventMessage) -> Result<Self, Invalid> {
-        Ok(Self::Body(BodyEvent { stamp: m.stamp.try_into()?, kind: m.event }))
+        Ok(Self::Body(BodyEvent::new(m.stamp.try_into()?, m.event)))
     }
 }
 

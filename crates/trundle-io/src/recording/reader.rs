@@ -1,12 +1,14 @@
 //! Reader of a recording, message by message.
 
+use super::channels::{Encoding, RawMessage};
+use super::cut::RecordingCut;
 use super::images::{self, ImageBytes, WaitingImages};
 use super::messages::{
     self, BodyEventMessage, CliffMessage, GyroRateMessage, ImageMessage, JsonImage, OdometryMessage,
     ScanMessage, TouchMessage, WheelTicksMessage,
 };
 use super::poses::PoseInFrame;
-use super::stream::{Encoding, MessageStream, RawMessage, RecordingCut};
+use super::stream::MessageStream;
 use super::topics;
 use crate::ros::{CdrReader, Wire};
 use crate::{EncodedEvent, Expected, IoError};
@@ -61,7 +63,7 @@ impl RecordingReader {
         let reader = Self::of(MessageStream::open_to_cut(path, Encoding::Own)?)?;
         match reader.cut() {
             Some(cut) if reader.config.is_none() && reader.ahead.is_none() => {
-                let problem = format!("the recording was cut at byte {}, before its first message", cut.byte);
+                let problem = format!("the recording {}, before its first message", cut.place());
                 Err(IoError::malformed(path, problem))
             }
             _ => Ok(reader),

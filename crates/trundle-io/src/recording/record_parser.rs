@@ -3,7 +3,10 @@
 use mcap::records::{Record, op};
 use mcap::{McapError, McapResult, parse_record};
 
-/// A schema, channel or message; `None` of any other record.
+/// Longest record that is read, bytes: a bound for broken lengths. Source: ours.
+pub(super) const MAX_RECORD: usize = 1 << 28;
+
+/// A schema, channel or message; `None` for any other record.
 ///
 /// # Errors
 /// When the record is broken, or a text is longer than the record.

@@ -1,45 +1,22 @@
 //! Sequential reader of the messages of any MCAP file, with bounded memory.
 
-use super::chunk_decoder::{OwnedRecord, records_of_chunk};
-use super::cut::{WHOLE, records_of_cut_chunk, whole_part};
-use super::record_parser::parse_needed_record;
-use super::topics;
+use super::channels::{Channels, Encoding, RawMessage};
+use super::chunk_decoder::{HEAD_BYTES, OwnedRecord, records_of_chunk};
+use super::cut::{MAGIC_BYTES, RecordingCut, WHOLE, records_of_cut_chunk, whole_part};
+use super::damage::{ChunkStarts, Damage, SkippedParts, Summary, broken};
+use super::record_parser::{MAX_RECORD, parse_needed_record};
 use super::unpacked::unpacked;
 use crate::IoError;
 use mcap::McapError;
-use mcap::records::{Record, op};
+use mcap::records::op;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::VecDeque;
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
-use trundle_core::Stamp;
-
-/// Longest record that is read, bytes: a bound for broken lengths. Source: ours.
-const MAX_RECORD: usize = 1 << 28;
 
 /// Largest ratio of a record to its packed file. A bound for broken lengths. Source: ours.
 const MAX_PACKING: u64 = 256;
-
-/// A message with the bytes of the file.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct RawMessage {
-    pub topic: String,
-    pub schema: String,
-    pub stamp: Stamp,
-    /// Whether the data is JSON, not CDR.
-    pub is_json: bool,
-    pub data: Vec<u8>,
-}
-
-/// Encoding of the messages that a reader accepts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Encoding {
-    /// Trundle's own: JSON, or CDR of ROS 2; any other message is an error.
-    Own,
-    /// Messages of ROS 2; others are skipped.
-    Cdr,
-}
 
 /// The messages of an MCAP file in the order of the file; one chunk is in memory.
 pub(crate) struct MessageStream {
@@ -47,91 +24,76 @@ pub(crate) struct MessageStream {
     file: Box<dyn Read + Send>,
     is_packed: bool,
     reader: LinearReader,
+    /// Longest record that is read \[bytes\].
+    max_record: usize,
+    /// Position of the next record outside of chunks \[bytes of the unpacked file\].
+    at: u64,
+    /// Whether a cut or damaged file is read as far as possible.
+    recovers: bool,
     /// Position of the cut, once reading has reached it.
     cut: Option<RecordingCut>,
-    /// Records of one chunk that are read but not yet delivered.
+    skipped: Option<SkippedParts>,
+    /// Starts of the chunks by the summary, once damage was met \[bytes\].
+    chunks: Option<ChunkStarts>,
+    /// Records of one chunk that are read but not yet delivered, and the position of the chunk.
     records: VecDeque<OwnedRecord>,
+    records_at: u64,
     /// Records of the chunk that the file was cut in.
     last_records: VecDeque<OwnedRecord>,
-    encoding: Encoding,
-    schemas: BTreeMap<u16, String>,
-    channels: BTreeMap<u16, ChannelName>,
-    passed_over: BTreeSet<u16>,
+    channels: Channels,
+    progress: Progress,
+}
+
+/// Bytes of the file.
+struct Progress {
     read: u64,
     len: u64,
-    stopped: bool,
-}
-
-/// Topic and schema of a channel.
-struct ChannelName {
-    topic: String,
-    schema: u16,
-    is_json: bool,
-    /// Schema of the JSON in the channel's texts.
-    json_schema: Option<String>,
-}
-
-/// Position at which a recording was cut.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RecordingCut {
-    /// Length of the file \[bytes\].
-    pub byte: u64,
-}
-
-impl RecordingCut {
-    /// The cut in one sentence; `seconds`: duration of the data before the cut.
-    #[must_use]
-    pub fn report(&self, seconds: f64) -> String {
-        format!("the recording was cut at byte {}; {seconds:.2} s of it were read", self.byte)
-    }
+    is_stopped: bool,
 }
 
 impl MessageStream {
-    /// The messages of a complete file; a cut file gives an error at the cut.
+    /// The messages of a complete file; a cut or damaged file gives an error at that position.
     pub fn open(path: &Path, encoding: Encoding) -> Result<Self, IoError> {
         Self::open_file(path, encoding, false)
     }
 
-    /// The messages of a file, of a cut one those before the cut.
+    /// The messages of a cut or damaged file: of a recording of our own, those before that position; of a bag, all that can be read.
     pub fn open_to_cut(path: &Path, encoding: Encoding) -> Result<Self, IoError> {
         Self::open_file(path, encoding, true)
     }
 
-    fn open_file(path: &Path, encoding: Encoding, to_cut: bool) -> Result<Self, IoError> {
+    fn open_file(path: &Path, encoding: Encoding, recovers: bool) -> Result<Self, IoError> {
         let system = || IoError::system(path, "read");
         let mut file = File::open(path).map_err(system())?;
         let meta = file.metadata().map_err(system())?;
         if meta.is_dir() {
             return Err(system()(std::io::ErrorKind::IsADirectory.into()));
         }
-        let part = if to_cut { whole_part(&mut file, meta.len()).map_err(system())? } else { WHOLE };
+        let part = if recovers { whole_part(&mut file, meta.len()).map_err(system())? } else { WHOLE };
         let last_records = match part.is_cut {
             true => records_of_cut_chunk(&mut file, part.end).map_err(system())?,
             false => Vec::new(),
         };
         let (file, is_packed) = unpacked(file).map_err(system())?;
         let bytes = meta.len().saturating_mul(if is_packed { MAX_PACKING } else { 1 });
-        let limit = usize::try_from(bytes).unwrap_or(MAX_RECORD).clamp(1024, MAX_RECORD);
-        let options = LinearReaderOptions::default()
-            .with_emit_chunks(true)
-            .with_record_length_limit(limit)
-            .with_skip_end_magic(part.is_cut);
-        let reader = LinearReader::new_with_options(options);
+        let max_record = usize::try_from(bytes).unwrap_or(MAX_RECORD).clamp(1024, MAX_RECORD);
+        let options = options(max_record).with_skip_end_magic(part.is_cut);
         Ok(Self {
             path: path.to_owned(),
             file: Box::new(file.take(part.end)),
             is_packed,
-            reader,
-            cut: part.is_cut.then_some(RecordingCut { byte: meta.len() }),
+            reader: LinearReader::new_with_options(options),
+            max_record,
+            at: MAGIC_BYTES,
+            recovers,
+            cut: part.is_cut.then_some(RecordingCut { byte: meta.len(), is_damage: false }),
+            skipped: None,
+            chunks: None,
             records: VecDeque::new(),
+            records_at: MAGIC_BYTES,
             last_records: last_records.into(),
-            encoding,
-            schemas: BTreeMap::new(),
-            channels: BTreeMap::new(),
-            passed_over: BTreeSet::new(),
-            read: 0,
-            len: meta.len(),
-            stopped: false,
+            channels: Channels::new(encoding),
+            progress: Progress { read: 0, len: meta.len(), is_stopped: false },
         })
     }
 
@@ -144,19 +106,25 @@ impl MessageStream {
         self.cut
     }
 
+    /// Damaged parts that were left out so far.
+    pub fn skipped(&self) -> Option<SkippedParts> {
+        self.skipped
+    }
+
     /// Share of the file that is read, 0 to 1.
     pub fn progress(&self) -> f64 {
-        if self.len == 0 { 1.0 } else { (self.read as f64 / self.len as f64).min(1.0) }
+        let Progress { read, len, .. } = self.progress;
+        if len == 0 { 1.0 } else { (read as f64 / len as f64).min(1.0) }
     }
 
     /// Ends the stream: no further messages follow.
     pub fn stop(&mut self) {
-        self.stopped = true;
+        self.progress.is_stopped = true;
     }
 
     /// The next message; `None` at the end of a whole file.
     pub fn next_message(&mut self) -> Result<Option<RawMessage>, IoError> {
-        while !self.stopped {
+        while !self.progress.is_stopped {
             while let Some((opcode, data)) = self.records.pop_front() {
                 if let Some(message) = self.parse(opcode, &data)? {
                     return Ok(Some(message));
@@ -169,119 +137,115 @@ impl MessageStream {
         Ok(None)
     }
 
-    /// Reads the next record; for a chunk, all its records. Returns whether a record was read.
+    /// Reads the next record; for a chunk, all its records. Returns whether the file goes on.
     fn read_records(&mut self) -> Result<bool, IoError> {
         loop {
             let Some(event) = self.reader.next_event() else {
                 std::mem::swap(&mut self.records, &mut self.last_records);
                 return Ok(!self.records.is_empty());
             };
-            let event = event.map_err(|error| broken((&self.path, self.encoding), self.read, &error))?;
-            match event {
-                LinearReadEvent::ReadRequest(need) => {
-                    let buffer = self.reader.insert(need.max(1 << 16));
-                    let read = self.file.read(buffer).map_err(|error| self.refused(error))?;
-                    self.reader.notify_read(read);
-                    self.read += read as u64;
+            self.records_at = self.at;
+            let records = match event {
+                Ok(LinearReadEvent::ReadRequest(need)) => {
+                    self.fill(need)?;
+                    continue;
                 }
-                LinearReadEvent::Record { opcode: op::CHUNK, data } => {
-                    let records = records_of_chunk(data)
-                        .map_err(|error| broken((&self.path, self.encoding), self.read, &error))?;
-                    self.records.extend(records);
-                    return Ok(true);
+                Ok(LinearReadEvent::Record { opcode, data }) => {
+                    self.at += (HEAD_BYTES + data.len()) as u64;
+                    if opcode == op::CHUNK {
+                        records_of_chunk(data)
+                    } else {
+                        Ok(vec![(opcode, data.to_vec())])
+                    }
                 }
-                LinearReadEvent::Record { opcode, data } => {
-                    self.records.push_back((opcode, data.to_vec()));
-                    return Ok(true);
-                }
+                Err(error) => return self.pass(Damage::Length, &error),
+            };
+            match records {
+                Ok(records) => self.records.extend(records),
+                Err(error) => return self.pass(Damage::Chunk, &error),
             }
+            return Ok(true);
         }
     }
 
-    /// The message of a record; `None` of another record.
+    /// Reads at least `need` bytes if the file has them.
+    fn fill(&mut self, need: usize) -> Result<(), IoError> {
+        let buffer = self.reader.insert(need.max(1 << 16));
+        match self.file.read(buffer) {
+            Ok(read) => {
+                self.reader.notify_read(read);
+                self.progress.read += read as u64;
+                Ok(())
+            }
+            Err(error) if self.is_packed => {
+                let problem = format!(
+                    "the zstd data is truncated or broken after {} bytes ({error})",
+                    self.progress.read
+                );
+                Err(IoError::malformed(&self.path, problem))
+            }
+            Err(error) => Err(IoError::system(&self.path, "read")(error)),
+        }
+    }
+
+    /// The message of a record; `None` for another record.
     fn parse(&mut self, opcode: u8, data: &[u8]) -> Result<Option<RawMessage>, IoError> {
-        let record = parse_needed_record(opcode, data)
-            .map_err(|error| broken((&self.path, self.encoding), self.read, &error))?
-            .map(Record::into_owned);
-        record.map_or(Ok(None), |record| self.take(record))
+        match parse_needed_record(opcode, data) {
+            Ok(Some(record)) => self.channels.take(record.into_owned(), &self.path),
+            Ok(None) => Ok(None),
+            Err(error) => {
+                self.records.clear();
+                self.pass(Damage::Chunk, &error).map(|_| None)
+            }
+        }
     }
 
-    /// The error of reading on; of a packed file the data is at fault.
-    fn refused(&self, error: std::io::Error) -> IoError {
-        if !self.is_packed {
-            return IoError::system(&self.path, "read")(error);
+    /// Passes a damaged part at `records_at`, if the file is read as far as possible. Returns whether the file goes on.
+    fn pass(&mut self, damage: Damage, error: &McapError) -> Result<bool, IoError> {
+        let encoding = self.channels.encoding();
+        let is_other_kind = matches!(error, McapError::BadMagic) && self.at == MAGIC_BYTES;
+        if is_other_kind || !self.recovers || matches!(error, McapError::UnsupportedCompression(_)) {
+            return Err(broken(&self.path, encoding, self.records_at, error));
         }
-        let problem = format!("the zstd data is truncated or broken after {} bytes", self.read);
-        IoError::malformed(&self.path, problem)
+        let mut named = Vec::new();
+        if self.chunks.is_none() {
+            let summary = match self.is_packed {
+                true => Summary::default(),
+                false => Summary::read(&self.path).map_err(IoError::system(&self.path, "read"))?,
+            };
+            // Only once: a damaged definition would be met again and again.
+            (self.chunks, named) = (Some(summary.chunks), summary.named);
+        }
+        let next = match damage {
+            Damage::Chunk => Some(self.at),
+            Damage::Length => self.chunks.as_ref().and_then(|chunks| chunks.behind(self.records_at)),
+        };
+        let Some(next) = next.filter(|_| encoding == Encoding::Cdr) else {
+            self.cut = Some(RecordingCut { byte: self.records_at, is_damage: true });
+            self.stop();
+            return Ok(false);
+        };
+        if damage == Damage::Length {
+            self.resume(next)?;
+        }
+        self.skipped = Some(SkippedParts::with(self.skipped, self.records_at));
+        self.channels.are_incomplete = true;
+        self.records.extend(named);
+        Ok(true)
     }
 
-    /// Stores schemas and channels, and assigns their names to messages.
-    fn take(&mut self, record: Record<'static>) -> Result<Option<RawMessage>, IoError> {
-        match record {
-            Record::Schema { header, .. } => drop(self.schemas.insert(header.id, header.name)),
-            Record::Channel(channel) => {
-                let is_cdr = channel.message_encoding == "cdr";
-                if self.encoding == Encoding::Cdr && !is_cdr {
-                    self.passed_over.insert(channel.id);
-                    return Ok(None);
-                }
-                if !is_cdr && channel.message_encoding != "json" {
-                    let problem = format!(
-                        "messages on {} are in '{}', expected json or cdr",
-                        channel.topic, channel.message_encoding
-                    );
-                    return Err(IoError::malformed(&self.path, problem));
-                }
-                let json_schema = channel.metadata.get(topics::SCHEMA_KEY).cloned();
-                let name = ChannelName {
-                    topic: channel.topic,
-                    schema: channel.schema_id,
-                    is_json: !is_cdr,
-                    json_schema,
-                };
-                self.channels.insert(channel.id, name);
-            }
-            Record::Message { header, .. } if self.passed_over.contains(&header.channel_id) => {}
-            Record::Message { header, data } => {
-                let ChannelName { topic, schema, is_json, json_schema } =
-                    self.channels.get(&header.channel_id).ok_or_else(|| {
-                        let problem = format!("a message on the unknown channel {}", header.channel_id);
-                        IoError::malformed(&self.path, problem)
-                    })?;
-                let nanos = i64::try_from(header.log_time).map_err(|_| {
-                    IoError::malformed(&self.path, format!("log time {} ns is out of range", header.log_time))
-                })?;
-                return Ok(Some(RawMessage {
-                    topic: topic.clone(),
-                    schema: json_schema.as_ref().or(self.schemas.get(schema)).cloned().unwrap_or_default(),
-                    stamp: Stamp::from_nanos(nanos),
-                    is_json: *is_json,
-                    data: data.into_owned(),
-                }));
-            }
-            _ => {}
-        }
-        Ok(None)
+    /// Goes on at the record that begins at byte `start`.
+    fn resume(&mut self, start: u64) -> Result<(), IoError> {
+        let system = || IoError::system(&self.path, "read");
+        let mut file = File::open(&self.path).map_err(system())?;
+        file.seek(SeekFrom::Start(start)).map_err(system())?;
+        self.file = Box::new(file);
+        self.reader = LinearReader::new_with_options(options(self.max_record).with_skip_start_magic(true));
+        self.at = start;
+        Ok(())
     }
 }
 
-fn broken((path, encoding): (&Path, Encoding), read: u64, error: &McapError) -> IoError {
-    let hint = if encoding == Encoding::Own { "; --recover reads it to there" } else { "" };
-    let problem = match error {
-        McapError::BadMagic if read <= 1 << 16 => "not an MCAP recording".to_owned(),
-        // A chunk that is longer than the file, within what chunks have.
-        McapError::RecordTooLarge { opcode: op::CHUNK, len } if *len <= MAX_RECORD as u64 => {
-            format!("the recording is truncated: it ends in the middle of a chunk of {len} bytes{hint}")
-        }
-        McapError::UnexpectedEof | McapError::UnexpectedEoc => {
-            format!("the recording is truncated: it ends after {read} bytes, in the middle of a record{hint}")
-        }
-        McapError::RecordTooLarge { len, .. } => {
-            format!(
-                "the recording is broken before byte {read}: a length of {len} bytes is longer than its record or the file"
-            )
-        }
-        other => format!("the recording is broken before byte {read}: {other}"),
-    };
-    IoError::malformed(path, problem)
+fn options(max_record: usize) -> LinearReaderOptions {
+    LinearReaderOptions::default().with_emit_chunks(true).with_record_length_limit(max_record)
 }

@@ -16,6 +16,8 @@ pub(in crate::ros) struct Bag {
     open: Option<Storage>,
     /// Positions of cuts, one sentence per file.
     pub(in crate::ros) cuts: Vec<String>,
+    /// Damaged parts that were left out, one sentence per file.
+    pub(in crate::ros) skipped: Vec<String>,
 }
 
 /// One file of a bag.
@@ -29,7 +31,7 @@ impl Bag {
     /// Opens a folder with its `metadata.yaml`, or all bag files of a folder, or a single file.
     pub(in crate::ros) fn open(path: &Path) -> Result<Self, IoError> {
         let files = if path.is_dir() { files_of(path)? } else { vec![path.to_owned()] };
-        let mut bag = Self { files: files.into_iter(), open: None, cuts: Vec::new() };
+        let mut bag = Self { files: files.into_iter(), open: None, cuts: Vec::new(), skipped: Vec::new() };
         bag.next_file()?;
         Ok(bag)
     }
@@ -56,10 +58,9 @@ impl Bag {
     }
 
     fn next_file(&mut self) -> Result<(), IoError> {
-        if let Some(Storage::Mcap(stream)) = &self.open
-            && let Some(cut) = stream.cut()
-        {
-            self.cuts.push(format!("the bag was cut at byte {}", cut.byte));
+        if let Some(Storage::Mcap(stream)) = &self.open {
+            self.cuts.extend(stream.cut().map(|cut| format!("the bag {}", cut.place())));
+            self.skipped.extend(stream.skipped().map(|parts| parts.report()));
         }
         let Some(path) = self.files.next() else {
             self.open = None;

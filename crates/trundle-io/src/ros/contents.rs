@@ -68,7 +68,8 @@ impl Contents {
             return Err(IoError::malformed(path, format!("{cut}, before its first scan")));
         }
         let line = contents.message_count();
-        contents.skipped.extend(bag.cuts.into_iter().map(|problem| LaserLogSkip { line, problem }));
+        let problems = bag.cuts.into_iter().chain(bag.skipped);
+        contents.skipped.extend(problems.map(|problem| LaserLogSkip { line, problem }));
         Ok(contents)
     }
 

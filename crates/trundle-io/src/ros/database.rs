@@ -40,12 +40,13 @@ impl BagDatabase {
     pub(super) fn next_message(&mut self) -> Result<Option<RawMessage>, IoError> {
         while let Some((id, mut values)) = self.sqlite.next_row(&mut self.messages)? {
             let data = values.pop();
-            let (Some(Value::Integer(topic)), Some(Value::Integer(nanos)), Some(Value::Blob(data))) =
-                (values.get(1), values.get(2), data)
+            let (Some(Value::Integer(topic)), Some(Value::Integer(nanos))) = (values.get(1), values.get(2))
             else {
-                let problem = format!("message {id}: expected topic_id, timestamp and data");
+                let problem = format!("message {id}: expected topic_id and timestamp");
                 return Err(IoError::malformed(&self.path, problem));
             };
+            // A row without bytes is a message of length 0, which its reader refuses alone.
+            let data = if let Some(Value::Blob(data)) = data { data } else { Vec::new() };
             if let Some((topic, schema)) = self.topics.get(topic) {
                 let (topic, schema) = (topic.clone(), schema.clone());
                 return Ok(Some(RawMessage {

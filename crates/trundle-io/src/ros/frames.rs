@@ -36,13 +36,13 @@ impl Frames {
     /// `to_from_from`: the pose of frame `from` in frame `to`, if transforms lead from both to a common frame.
     pub(in crate::ros) fn between(&self, to: &str, from: &str) -> Result<Pose3, NoTransform> {
         let (up_to, up_from) = (self.chain(to), self.chain(from));
-        let meeting = up_from.iter().find_map(|(name, meet_from_from)| {
-            let (_, meet_from_to) = up_to.iter().find(|(other, _)| other == name)?;
-            Some((meet_from_to, meet_from_from))
+        let ancestor = up_from.iter().find_map(|(name, ancestor_from_from)| {
+            let (_, ancestor_from_to) = up_to.iter().find(|(other, _)| other == name)?;
+            Some((ancestor_from_to, ancestor_from_from))
         });
-        let (meet_from_to, meet_from_from) = meeting.ok_or(NoTransform::Unconnected)?;
+        let (ancestor_from_to, ancestor_from_from) = ancestor.ok_or(NoTransform::Unconnected)?;
         let good = |pose: &MessagePose| pose.clone().map_err(NoTransform::Broken);
-        Ok(good(meet_from_to)?.inverse() * good(meet_from_from)?)
+        Ok(good(ancestor_from_to)?.inverse() * good(ancestor_from_from)?)
     }
 
     /// A frame and all its ancestors, each with its pose `above_from_frame`, or the broken transform on the path.

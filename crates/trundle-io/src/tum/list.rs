@@ -2,7 +2,7 @@
 
 use super::rows::sort;
 use crate::excerpt::excerpt;
-use crate::files::table_rows;
+use crate::files::{is_decimal_comma, table_rows};
 use crate::stamp_unit::StampUnit;
 use crate::{IoError, Warnings};
 use std::path::{Path, PathBuf};
@@ -25,7 +25,11 @@ pub(super) fn parse_list(
 ) -> Result<Vec<ListedImage>, IoError> {
     let mut rows = Vec::new();
     for (line, content) in table_rows(text) {
-        rows.push(one_image(content).map_err(|problem| IoError::line(path, line, problem))?);
+        rows.push(
+            with_decimal_points(content)
+                .and_then(one_image)
+                .map_err(|problem| IoError::line(path, line, problem))?,
+        );
     }
     if rows.is_empty() {
         return Err(IoError::malformed(path, "no image in it, expected lines of: timestamp filename"));
@@ -52,7 +56,11 @@ pub(super) fn parse_pairs(
     let lines = table_rows(text);
     let mut rows = Vec::with_capacity(lines.len());
     for (line, content) in &lines {
-        rows.push(two_images(content).map_err(|problem| IoError::line(path, *line, problem))?);
+        rows.push(
+            with_decimal_points(content)
+                .and_then(two_images)
+                .map_err(|problem| IoError::line(path, *line, problem))?,
+        );
     }
     let unit = unit(rows.iter().map(|[stamp, ..]| *stamp), path, warnings);
     let mut pairs = Vec::with_capacity(rows.len());
@@ -99,6 +107,16 @@ fn without_repetitions(images: Vec<ListedImage>, path: &Path, warnings: &mut War
     kept
 }
 
+/// A line, unless a number of it has a decimal comma, which would end the stamp.
+fn with_decimal_points(content: &str) -> Result<&str, String> {
+    let is_separator = |c: char| c.is_whitespace() || c == ';';
+    let mut words = content.split(is_separator).filter(|word| !word.starts_with(','));
+    let found = words.find(|word| is_decimal_comma(word) && *word != content);
+    found.map_or(Ok(content), |word| {
+        Err(format!("'{}' has a decimal comma, expected a decimal point", excerpt(word)))
+    })
+}
+
 /// The text of a stamp and the name of a file, which may hold blanks.
 fn one_image(content: &str) -> Result<(&str, &str), String> {
     let separators = |c: char| c.is_whitespace() || c == ',';
@@ -142,7 +160,10 @@ mod tests {
     fn lines_out_of_order_are_sorted_and_one_image_is_taken_of_a_stamp() {
         let (list, warnings) = parse("2 a.png\n1.5 b.png\n3 c.png").unwrap();
         assert_eq!(list.iter().map(|image| image.stamp.as_secs()).collect::<Vec<_>>(), [1.5, 2.0, 3.0]);
-        assert_eq!(warnings, "timestamps go back 1 times in 3 rows, which are sorted: rgb.txt\n");
+        assert_eq!(
+            warnings,
+            "rows with an earlier timestamp than the row before: 1 of 3; the rows are sorted: rgb.txt\n"
+        );
         let (list, warnings) = parse("2 a.png\n2.0 a.png\n3 b.png").unwrap();
         assert_eq!((list.len(), warnings.as_str()), (2, ""));
         let (list, warnings) = parse("2 a.png\n\n2.0 b.png").unwrap();
@@ -156,6 +177,22 @@ mod tests {
         assert_eq!(problem("1.5"), "rgb.txt, line 1: '1.5', expected: timestamp filename");
         assert!(problem("#\n").starts_with("rgb.txt: no image"));
         assert!(problem("one a.png").contains("timestamp is 'one'"));
+    }
+
+    #[test]
+    fn decimal_commas_are_named_and_commas_between_columns_are_not() {
+        let problem = "line 1: '1305031102,17' has a decimal comma, expected a decimal point";
+        for row in ["1305031102,17 a.png", "1305031102,17\ta.png", "1305031102,17;a.png"] {
+            assert_eq!(parse(row).unwrap_err(), format!("rgb.txt, {problem}"));
+        }
+        let pairs = |text: &str| {
+            let pairs = parse_pairs(Path::new("associations.txt"), text, &mut Warnings::default());
+            pairs.map(|pairs| pairs.len()).map_err(|error| error.to_string())
+        };
+        let row = "1305031102,17 a.png 1305031102,18 b.png";
+        assert_eq!(pairs(row).unwrap_err(), format!("associations.txt, {problem}"));
+        assert_eq!(pairs("1.5,a.png,1.5,b.png\n2, a.png, 2, b.png"), Ok(2));
+        assert_eq!(parse("1.5,a.png\n2, b.png\n1403636579,1403636580.png").unwrap().0.len(), 3);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Signs of wrong units in odometry.
 
 use std::f64::consts::TAU;
-use trundle_core::{Pose2, Stamp};
+use trundle_core::{Hypotenuse, Pose2, Stamp};
 
 /// Speed that no indoor robot reaches \[m/s\]. Faster positions are in another unit. Source: ours.
 const MAX_SPEED_M_S: f64 = 10.0;
@@ -11,7 +11,7 @@ const MAX_TURN_RATE_RAD_S: f64 = 10.0;
 const MIN_FAST_SHARE: f64 = 0.05;
 /// Number of steps that must be too fast. Fewer prove no unit. Source: ours.
 const MIN_FAST_STEPS: usize = 3;
-/// Agreement of displacement and heading, 0 to 1, from which on they agree. Source: ours.
+/// Smallest agreement of displacement and heading that counts as one, 0 to 1. Source: ours.
 const MIN_AGREEMENT: f64 = 0.8;
 /// Agreement of displacement and heading, 0 to 1, below which they contradict. Source: ours.
 const MAX_CONTRADICTION: f64 = 0.5;
@@ -26,7 +26,20 @@ pub(super) struct OdometryRow {
 /// Numbers that seem to be in another unit than metres and radians.
 pub(super) fn unit_problems(rows: &[(Stamp, OdometryRow)]) -> Vec<String> {
     let steps: Vec<Step> = rows.windows(2).filter_map(|pair| Step::between(&pair[0], &pair[1])).collect();
-    [wrong_positions(&steps), wrong_headings(rows, &steps)].into_iter().flatten().collect()
+    let positions = wrong_positions(&steps).or_else(|| jumps(&steps));
+    [positions, wrong_headings(rows, &steps)].into_iter().flatten().collect()
+}
+
+/// Steps that are too fast, but too few for another unit.
+fn jumps(steps: &[Step]) -> Option<String> {
+    let is_jump = |step: &&Step| step.distance / step.duration > MAX_SPEED_M_S;
+    let farthest = steps.iter().filter(is_jump).max_by(|a, b| a.distance.total_cmp(&b.distance))?;
+    Some(format!(
+        "{} steps are faster than {MAX_SPEED_M_S} m/s, the longest {:.1} m in {:.3} s: was the robot carried, or is a row wrong?",
+        steps.iter().filter(is_jump).count(),
+        farthest.distance,
+        farthest.duration
+    ))
 }
 
 /// Motion between two successive rows.
@@ -49,7 +62,7 @@ impl Step {
         let turn = (b.heading - a.heading).abs();
         let duration = *t1 - *t0;
         let turn = turn.min((TAU - turn).abs());
-        let step = Self { duration, distance: x.hypot(y), length: y.atan2(x), heading: a.heading, turn };
+        let step = Self { duration, distance: x.hypotenuse(y), length: y.atan2(x), heading: a.heading, turn };
         (duration > 0.0).then_some(step)
     }
 
@@ -132,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn headings_beyond_one_turn_and_a_robot_that_was_carried_are_not_another_unit() {
+    fn headings_beyond_one_turn_are_not_another_unit_and_a_jump_is_named() {
         let mut rows: Vec<_> = (0..1000)
             .map(|i| {
                 let heading = 0.006 * i as f64;
@@ -140,7 +153,12 @@ mod tests {
                 (Stamp::from_nanos(i * 20_000_000), OdometryRow { pose: place, heading: 4.0 * TAU + heading })
             })
             .collect();
-        rows[500].1.pose.x += 50.0;
         assert_eq!(unit_problems(&rows), Vec::<String>::new());
+        rows[500].1.pose.x += 50.0;
+        let problems = unit_problems(&rows);
+        assert!(
+            problems.len() == 1 && problems[0].starts_with("2 steps are faster than 10 m/s, the longest 50"),
+            "{problems:?}"
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! Rows of numbers with a stamp: the text tables of trajectories and odometry.
 
 use crate::excerpt::excerpt;
-use crate::files::{fields, table_rows};
+use crate::files::{fields, is_decimal_comma, table_rows};
 use crate::stamp_unit::StampUnit;
 use crate::{IoError, Warnings};
 use std::path::Path;
@@ -60,6 +60,9 @@ impl Table<'_> {
 
     /// The stamp and the numbers of a line.
     fn row(&self, unit: StampUnit, line: &str) -> Result<(Stamp, Vec<f64>), String> {
+        if let Some(word) = decimal_comma(line) {
+            return Err(format!("'{}' has a decimal comma, expected a decimal point", excerpt(word)));
+        }
         let parts: Vec<&str> = fields(line).collect();
         let expected = self.names.len() + 1;
         if parts.len() < expected || (parts.len() > expected && !self.is_open) {
@@ -80,6 +83,14 @@ impl Table<'_> {
     }
 }
 
+/// The first number with a comma in place of the decimal point, in a line whose numbers are separated by blanks alone.
+fn decimal_comma(line: &str) -> Option<&str> {
+    let mut words = line.split_whitespace();
+    let are_blanks_alone = words.clone().count() > 1 && words.clone().all(|word| !word.ends_with(','));
+    let is_number = |word: &&str| !word.starts_with(',') && is_decimal_comma(word);
+    are_blanks_alone.then(|| words.find(is_number)).flatten()
+}
+
 /// A finite number of a name.
 pub(super) fn number(name: &str, text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
@@ -92,7 +103,7 @@ pub(super) fn sort<T>(rows: &mut [(Stamp, T)], path: &Path, warnings: &mut Warni
     if out_of_order > 0 {
         let rows = rows.len();
         warnings.add(
-            &format!("timestamps go back {out_of_order} times in {rows} rows, which are sorted"),
+            &format!("rows with an earlier timestamp than the row before: {out_of_order} of {rows}; the rows are sorted"),
             &path.display().to_string(),
         );
     }

@@ -2,7 +2,7 @@
 
 use super::list::ListedImage;
 use super::members::Members;
-use super::odometry::read_odometry_file;
+use super::odometry::read_optional_odometry;
 use super::trajectory::read_optional_trajectory;
 use crate::camera::checked_depth_scale;
 use crate::codec::{decode_color, decode_depth_file};
@@ -159,10 +159,11 @@ fn ground_truth(
 /// The odometry; `None` without its file.
 fn odometry(dir: &Path, warnings: &mut Warnings) -> Result<Option<Vec<(Stamp, Pose2)>>, IoError> {
     let path = dir.join("odometry.txt");
-    if !path.exists() {
+    // A link to nothing is an error of its reader.
+    if path.symlink_metadata().is_err() {
         return Ok(None);
     }
-    let (poses, mended) = read_odometry_file(&path)?;
+    let (poses, mended) = read_optional_odometry(&path)?;
     warnings.extend(mended);
     Ok(Some(poses))
 }

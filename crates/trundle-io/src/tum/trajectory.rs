@@ -3,7 +3,7 @@
 use super::kitti;
 use super::rows::{BrokenRows, Table, sort};
 use super::trajectory_form::Form;
-use crate::files::read_text;
+use crate::files::{read_text, read_text_lossy};
 use crate::{Expected, IoError, Warnings};
 use std::fmt::Write;
 use std::path::Path;
@@ -48,7 +48,7 @@ pub fn read_trajectory_file(path: &Path) -> Result<TrajectoryFile, IoError> {
 
 /// Reads a trajectory that a run can do without: rows that cannot be read are left out with a warning.
 pub(super) fn read_optional_trajectory(path: &Path) -> TrajectoryFile {
-    let text = Expected::Trajectory.check(path).and_then(|_| read_text(path));
+    let text = Expected::Trajectory.check(path).and_then(|_| read_text_lossy(path));
     let read = text.and_then(|text| parse_trajectory(path, &text, BrokenRows::LeftOut));
     read.unwrap_or_else(|error| {
         let mut file = TrajectoryFile::default();
@@ -176,7 +176,9 @@ mod tests {
         let message = lines(&read.warnings);
         assert!(message.contains("are taken as milliseconds, expected seconds: a.txt"), "{message}");
         assert!(
-            message.contains("timestamps go back 1 times in 2 rows, which are sorted: a.txt"),
+            message.contains(
+                "rows with an earlier timestamp than the row before: 1 of 2; the rows are sorted: a.txt"
+            ),
             "{message}"
         );
     }

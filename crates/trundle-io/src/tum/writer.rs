@@ -43,10 +43,12 @@ impl<'f> TumWriter<'f> {
         if let Some(problem) = problem {
             return Err(IoError::malformed(&self.folder.target().join(name), problem));
         }
+        let depth = file_name("depth", frame.stamp);
         self.folder.write(&name, &frame.color_png)?;
-        self.folder.write(&file_name("depth", frame.stamp), &frame.depth_png)?;
+        self.folder.write(&depth, &frame.depth_png)?;
         // A frame that the disk did not take is in no list.
-        self.frames.extend((!self.folder.is_incomplete()).then_some(frame.stamp));
+        let is_whole = self.folder.holds(&name) && self.folder.holds(&depth);
+        self.frames.extend(is_whole.then_some(frame.stamp));
         Ok(())
     }
 

@@ -24,8 +24,8 @@ fn events() -> Vec<EncodedEvent> {
         EncodedEvent::Cliff(Cliff { stamp: stamp(41), over_edge: true }),
         EncodedEvent::Scan(scan(stamp(45))),
         EncodedEvent::Odometry(odometry(stamp(46))),
-        EncodedEvent::Body(BodyEvent { stamp: stamp(47), kind: BodyEventKind::Silence }),
-        EncodedEvent::Body(BodyEvent { stamp: stamp(48), kind: battery() }),
+        EncodedEvent::Body(BodyEvent::new(stamp(47), BodyEventKind::Silence)),
+        EncodedEvent::Body(BodyEvent::new(stamp(48), battery())),
         EncodedEvent::Truth { stamp: stamp(50), pose: Pose2 { x: 1.0 / 3.0, y: -0.0, theta: -2.0 / 3.0 } },
     ]
 }
@@ -222,6 +222,26 @@ fn a_recording_cut_at_any_byte_is_read_to_the_cut() {
     assert!(refused > 1);
     assert!(read_to_cut(&bytes[..60]).unwrap_err().contains("before its first message"));
     assert!(read_to_cut(b"hello, this is not it").is_err());
+}
+
+#[test]
+fn a_damaged_recording_is_refused_or_read_to_the_damage() {
+    let whole = recording();
+    let all = read(&whole).unwrap();
+    for at in (20..whole.len() - 20).step_by(37) {
+        let mut damaged = whole.clone();
+        damaged[at] ^= 0x55;
+        if read(&damaged).is_ok_and(|messages| messages == all) {
+            continue;
+        }
+        if let Err(error) = read(&damaged) {
+            let names_place = error.contains(" at byte ") || error.contains("messages on ");
+            assert!(error.starts_with("FILE: ") && names_place, "byte {at}: {error}");
+        }
+        if let Ok((messages, _)) = read_to_cut(&damaged) {
+            assert!(messages[..] == all[..messages.len()], "byte {at}");
+        }
+    }
 }
 
 #[test]

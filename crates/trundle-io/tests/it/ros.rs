@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use trundle_core::{Beam, Pose2};
-use trundle_io::{LaserLog, LaserLogOptions, read_laser_log, read_ros_bag};
+use trundle_io::{LaserLog, LaserLogOptions, LaserLogSkip, read_laser_log, read_ros_bag};
 
 fn bag(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/ros2").join(name)
@@ -103,10 +103,11 @@ fn topics_are_named_and_can_be_chosen() {
     let left = |log: &LaserLog| log.sources.left.clone();
     assert_eq!((log.sources.scans.as_str(), log.sources.odometry.as_str()), ("/scan", "/odom"));
     assert_eq!(left(&log), [("/scan_rear".to_owned(), 1), ("/odom_fused".to_owned(), 1)]);
-    let asked = |scans: &str, odometry: &str| LaserLogOptions {
-        scan_topic: Some(scans.to_owned()),
-        odometry_topic: Some(odometry.to_owned()),
-        ..LaserLogOptions::default()
+    let asked = |scans: &str, odometry: &str| {
+        let mut options = LaserLogOptions::default();
+        options.scan_topic = Some(scans.to_owned());
+        options.odometry_topic = Some(odometry.to_owned());
+        options
     };
     let log = log_with(&messages, "cdr", &asked("scan_rear", "/odom_fused")).unwrap();
     assert_eq!((log.scans.len(), log.scans[0].odom_from_base.x), (1, 7.0));
@@ -152,7 +153,8 @@ fn a_laser_is_upside_down_where_that_is_given() {
     let ranges: Vec<f32> = (1..6_u8).map(f32::from).collect();
     let messages = [odometry(1.0, 0.0), scan(1.0, &ranges)];
     let read = |upside_down| {
-        let options = LaserLogOptions { upside_down, ..LaserLogOptions::default() };
+        let mut options = LaserLogOptions::default();
+        options.upside_down = upside_down;
         log_with(&messages, "cdr", &options).unwrap()
     };
     let (plain, turned) = (read(false), read(true));
@@ -238,8 +240,14 @@ fn log_with(
     encoding: &str,
     options: &LaserLogOptions,
 ) -> Result<LaserLog, String> {
+    read_with(&mcap_of(messages, encoding, None), options)
+}
+
+/// An MCAP file with these messages, in chunks of about `chunk_size` bytes.
+fn mcap_of(messages: &[((&str, &str), Vec<u8>)], encoding: &str, chunk_size: Option<u64>) -> Vec<u8> {
     let mut bytes = Vec::new();
     let written = mcap::WriteOptions::new().compression(None);
+    let written = if chunk_size.is_some() { written.chunk_size(chunk_size) } else { written };
     let mut writer = written.create(std::io::Cursor::new(&mut bytes)).unwrap();
     let mut channels = BTreeMap::new();
     for ((topic, kind), data) in messages {
@@ -253,7 +261,7 @@ fn log_with(
     }
     writer.finish().unwrap();
     drop(writer);
-    read_with(&bytes, options)
+    bytes
 }
 
 fn read_bytes(bytes: &[u8]) -> Result<LaserLog, String> {
@@ -340,16 +348,80 @@ fn bags_without_what_it_takes_are_refused_by_name() {
 
 #[test]
 fn where_the_laser_sits_can_be_given() {
-    let laser =
-        LaserLogOptions { laser_x: Some(0.5), upside_down: true, max_range: Some(3.0), ..Default::default() };
+    let mut laser = LaserLogOptions::default();
+    laser.laser_x = Some(0.5);
+    laser.upside_down = true;
+    laser.max_range = Some(3.0);
     let log = read_laser_log(&bag("zstd.mcap"), &laser).unwrap();
     let scan = &log.scans[0].scan;
     assert_eq!((scan.origin().x, log.max_range), (0.5, Some(3.0)));
     assert!(scan.beams().iter().all(|beam| !matches!(beam, Beam::Hit { range } if *range >= 3.0)));
     let as_told = read_laser_log(&bag("zstd.mcap"), &LaserLogOptions::default()).unwrap();
-    let turned = LaserLogOptions { laser_turn: Some(0.25), ..LaserLogOptions::default() };
+    let mut turned = LaserLogOptions::default();
+    turned.laser_turn = Some(0.25);
     let turned = read_laser_log(&bag("zstd.mcap"), &turned).unwrap();
     assert_eq!(turned.scans[0].scan.origin(), as_told.scans[0].scan.origin(), "only the turn was given");
+}
+
+/// Opcode, start and end of each record of an MCAP file.
+fn records(bytes: &[u8]) -> Vec<(u8, usize, usize)> {
+    let mut records = Vec::new();
+    let mut at = mcap::MAGIC.len();
+    while let Some(head) = bytes.get(at..at + 9) {
+        let end = at + 9 + u64::from_le_bytes(head[1..].try_into().unwrap()) as usize;
+        records.push((head[0], at, end));
+        at = end;
+    }
+    records
+}
+
+#[test]
+fn a_damaged_chunk_of_a_bag_costs_its_own_messages() {
+    let messages: Vec<_> = (0..40)
+        .flat_map(|n| {
+            let time = 1.0 + 0.1 * f64::from(n);
+            [odometry(time, 0.01 * f64::from(n)), scan(time, &[1.0; 9])]
+        })
+        .collect();
+    let whole = mcap_of(&messages, "cdr", Some(4000));
+    assert_eq!(read_bytes(&whole).unwrap().scans.len(), 40);
+    let chunks: Vec<_> = records(&whole).into_iter().filter(|record| record.0 == 6).collect();
+    assert!(chunks.len() > 4, "{chunks:?}");
+    for (_, start, end) in chunks {
+        // The content of the chunk, and its length: the messages may be intact then.
+        for (at, is_content) in
+            [((start + end) / 2, true), (start + 60, true), (start + 1, false), (start + 7, false)]
+        {
+            let mut damaged = whole.clone();
+            damaged[at] ^= 0x55;
+            let log = read_bytes(&damaged).unwrap();
+            let scans = if is_content { 28..40 } else { 28..41 };
+            assert!(scans.contains(&log.scans.len()), "byte {at}: {} scans", log.scans.len());
+            let is_named = |skip: &LaserLogSkip| {
+                let names_place = !is_content || skip.problem.contains(&format!("at byte {start};"));
+                skip.problem.starts_with("the bag is damaged at") && names_place
+            };
+            assert!(log.skipped.iter().any(is_named), "byte {at}: {:?}", log.skipped);
+        }
+    }
+}
+
+/// Found by the fuzzer: the definition was read again for ever.
+#[test]
+fn a_bag_with_a_damaged_chunk_and_a_damaged_definition_is_read_to_its_end() {
+    const CHUNK: u8 = 6;
+    const CHANNEL: u8 = 4;
+    let messages: Vec<_> =
+        (0..9).map(f64::from).flat_map(|n| [odometry(1.0 + n, 0.01 * n), scan(1.0 + n, &[1.0; 9])]).collect();
+    let mut bytes = mcap_of(&messages, "cdr", Some(2000));
+    let records = records(&bytes);
+    let (_, start, end) = records.iter().find(|record| record.0 == CHUNK).unwrap();
+    let (_, channel, _) = records.iter().find(|record| record.0 == CHANNEL).unwrap();
+    bytes[(start + end) / 2] ^= 0x55;
+    // The length of the topic.
+    bytes[channel + 9 + 4..channel + 9 + 8].fill(0xff);
+    let skipped = read_bytes(&bytes).map_or_else(|error| error, |log| format!("{:?}", log.skipped));
+    assert!(skipped.contains("damaged"), "{skipped}");
 }
 
 #[test]

@@ -128,8 +128,8 @@ fn missing_and_ambiguous_topics_are_named() {
     let second = (0, "/other/depth/compressedDepth", lines().pop().unwrap().2);
     let twice: Vec<Line> = lines().into_iter().chain([second]).collect();
     assert!(refusal(&twice).contains("several topics hold depth images"), "{}", refusal(&twice));
-    let asked =
-        RosSequenceOptions { depth_topic: Some(DEPTH[1..].to_owned()), ..RosSequenceOptions::default() };
+    let mut asked = RosSequenceOptions::default();
+    asked.depth_topic = Some(DEPTH[1..].to_owned());
     assert_eq!(
         open(&twice, &asked).unwrap().1.topics().left,
         [("/other/depth/compressedDepth".to_owned(), 1)]

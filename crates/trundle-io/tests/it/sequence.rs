@@ -98,7 +98,8 @@ fn wrong_folders_are_one_clear_sentence() {
     fs::write(dir.path().join("depth.txt"), "1 a.png\n0.5 b.png").unwrap();
     let message: Vec<String> = open(dir.path()).unwrap().warnings().iter().map(ToString::to_string).collect();
     assert!(
-        message.len() == 1 && message[0].starts_with("timestamps go back 1 times in 2 rows"),
+        message.len() == 1
+            && message[0].starts_with("rows with an earlier timestamp than the row before: 1 of 2"),
         "{message:?}"
     );
     let error = open(&dir.path().join("nowhere")).unwrap_err().to_string();
@@ -115,7 +116,7 @@ fn wrong_folders_are_one_clear_sentence() {
 }
 
 #[test]
-fn a_wrong_ground_truth_is_warned_of_and_a_wrong_odometry_refused() {
+fn broken_rows_of_ground_truth_and_odometry_are_warned_of_and_odometry_without_any_row_is_refused() {
     let dir = folder();
     fs::write(dir.path().join("groundtruth.txt"), "# t\n1 2 3\n").unwrap();
     let sequence = open(dir.path()).unwrap();
@@ -131,6 +132,11 @@ fn a_wrong_ground_truth_is_warned_of_and_a_wrong_odometry_refused() {
     fs::remove_file(dir.path().join("groundtruth.txt")).unwrap();
     fs::write(dir.path().join("odometry.txt"), "1 2 3 x\n").unwrap();
     assert_eq!(problem(&dir), "DIR/odometry.txt, line 1: theta is 'x', expected a finite number");
+    fs::write(dir.path().join("odometry.txt"), "1 2 3 x\n2 0 0 0\n").unwrap();
+    let sequence = open(dir.path()).unwrap();
+    let message: Vec<String> = sequence.warnings().iter().map(ToString::to_string).collect();
+    assert!(message.len() == 1 && message[0].starts_with("row left out, theta is 'x'"), "{message:?}");
+    assert_eq!(sequence.odometry().unwrap().len(), 1);
 }
 
 #[test]

@@ -1,7 +1,28 @@
-// Features of the camera's last image and its depth, drawn over it.
+// The camera's last image, its depth and its features.
 
 import { element } from "./panel";
 import type { ByteMessage } from "./wire";
+
+let isDecoding = false;
+
+/** Draws an image. A browser keeps the pictures of an <img> for minutes, a canvas keeps the last one. */
+export async function drawImage(jpeg: Uint8Array<ArrayBuffer>): Promise<void> {
+  if (isDecoding) return;
+  isDecoding = true;
+  try {
+    const image = await createImageBitmap(new Blob([jpeg], { type: "image/jpeg" }));
+    const canvas = element<HTMLCanvasElement>("camera");
+    if (canvas.width !== image.width) canvas.width = image.width;
+    if (canvas.height !== image.height) canvas.height = image.height;
+    canvas.getContext("bitmaprenderer")!.transferFromImageBitmap(image);
+    canvas.hidden = false;
+    element("camera-none").hidden = true;
+  } catch {
+    // A broken image is not shown; the next one comes soon.
+  } finally {
+    isDecoding = false;
+  }
+}
 
 export function drawFeatures(message: Extract<ByteMessage, { kind: "features" }>): void {
   const canvas = element<HTMLCanvasElement>("camera-features");
@@ -31,7 +52,6 @@ const FAR_M = 6;
 
 export function drawDepth(message: Extract<ByteMessage, { kind: "depth" }>): void {
   const canvas = element<HTMLCanvasElement>("camera-depth");
-  element("depth-toggle").hidden = false;
   const height = Math.floor(message.pixels.length / Math.max(1, message.width));
   if (canvas.hidden || height === 0) return;
   if (canvas.width !== message.width) canvas.width = message.width;

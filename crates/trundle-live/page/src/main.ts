@@ -1,13 +1,14 @@
 // The live page: what the robot sees, and how it is steered.
 
 import { Annotations } from "./annotations";
-import { drawDepth, drawFeatures } from "./camera";
+import { drawDepth, drawFeatures, drawImage } from "./camera";
 import { Link, type LinkState } from "./link";
 import { MapView, type Layers } from "./map_view";
 import { addToLog, element, Panel } from "./panel";
 import { Teleop } from "./teleop";
 import { mapNames, saveMap } from "./map_files";
 import { SeriesCard } from "./series";
+import { RecordingSwitch } from "./recording";
 import { Settings } from "./settings";
 import { SpaceView } from "./space_view";
 import { startTheme, toggleTheme } from "./theme";
@@ -26,12 +27,6 @@ const timeline = new Timeline((pose) => {
 });
 /** Way of the map for a press of an arrow key [pixels]. */
 const PAN_PX = 80;
-/** The recording of the run in words. It cannot be switched while the robot runs: a replay needs it from its start. */
-const RECORDINGS: Record<string, string> = {
-  none: "Nothing is recorded.",
-  events: "Events are recorded, images are not.",
-  all: "Everything is recorded.",
-};
 let welcome: Welcome | null = null;
 let state: RobotState | null = null;
 /** What a refusal beside the map refers to. */
@@ -50,6 +45,7 @@ const annotations = new Annotations(map, () => state?.pose ?? null, {
   onClosed: () => tools.tool !== "move" && selectTool("move"),
 });
 const settings = new Settings(async (message) => (await link.ask(message)).refusal);
+const recording = new RecordingSwitch((on) => void request({ type: "record", on }));
 const series = new SeriesCard(() => {
   map.forgetRun();
   timeline.begin(new Float32Array());
@@ -82,7 +78,7 @@ function onReply(reply: Reply): void {
       document.body.dataset["kind"] = reply.kind;
       showKind(reply);
       element("log").replaceChildren();
-      element("recording").textContent = RECORDINGS[reply.recording] ?? "";
+      recording.begin(reply.recording);
       sendCamera();
       sendVisualMap();
       void offerMaps();
@@ -102,6 +98,9 @@ function onReply(reply: Reply): void {
     case "settings":
       settings.show(reply.settings);
       inspected.settings = reply.settings;
+      break;
+    case "recording":
+      recording.show(reply);
       break;
     case "series":
       series.show(reply);
@@ -128,7 +127,7 @@ function onBytes(message: ByteMessage): void {
       map.setScan(message.points);
       break;
     case "plan":
-      map.setPlan(message.points);
+      map.setPlan(message.points, message.waypoints);
       break;
     case "trail":
       map.setTrail(message.poses);
@@ -141,7 +140,7 @@ function onBytes(message: ByteMessage): void {
       drawFeatures(message);
       break;
     case "image":
-      showImage(message.jpeg);
+      void drawImage(message.jpeg);
       break;
     case "depth":
       drawDepth(message);
@@ -219,13 +218,12 @@ function connectButtons(): void {
   press("dock", () => void request({ type: "dock" }));
   press("pause", () => void request({ type: state?.paused ? "continue" : "pause" }));
   press("map-save", () => void saveMap(location.hash.slice(1)).then((problem) => problem && toast(problem, "bad")));
-  const showOver = (button: string, canvas: string) =>
-    press(button, () => {
-      element(canvas).hidden = !element(canvas).hidden;
-      element(button).setAttribute("aria-pressed", String(!element(canvas).hidden));
-    });
-  showOver("features-toggle", "camera-features");
-  showOver("depth-toggle", "camera-depth");
+  press("features-toggle", () => {
+    element("camera-features").hidden = !element("camera-features").hidden;
+    element("features-toggle").setAttribute("aria-pressed", String(!element("camera-features").hidden));
+  });
+  press("color-choice", () => choosePicture(false));
+  press("depth-choice", () => choosePicture(true));
   press("map-load", () => void loadMap());
   press("wheel-take", () => void request({ type: "take_wheel" }));
   press("theme", () => {
@@ -379,18 +377,6 @@ function toggle(id: string, button: string): void {
 
 // ---- camera
 
-let pictureUrl = "";
-
-function showImage(jpeg: Uint8Array<ArrayBuffer>): void {
-  const picture = element<HTMLImageElement>("camera");
-  const old = pictureUrl;
-  pictureUrl = URL.createObjectURL(new Blob([jpeg], { type: "image/jpeg" }));
-  picture.onload = picture.onerror = () => URL.revokeObjectURL(old);
-  picture.src = pictureUrl;
-  picture.hidden = false;
-  element("camera-none").hidden = true;
-}
-
 function toggleCamera(): void {
   const body = element("camera-body");
   body.hidden = !body.hidden;
@@ -400,10 +386,18 @@ function toggleCamera(): void {
   sendCamera();
 }
 
-/** Images are sent only while they can be seen. */
+/** Images are sent only while they can be seen, depth only while it is chosen. */
 function sendCamera(): void {
   const isShown = element("camera-card").offsetParent !== null && !element("camera-body").hidden && !document.hidden;
-  link.send({ type: "camera", on: isShown });
+  link.send({ type: "camera", on: isShown, depth: isShown && !element("camera-depth").hidden });
+}
+
+/** Shows depth or colour. */
+function choosePicture(isDepth: boolean): void {
+  element("camera-depth").hidden = !isDepth;
+  element("depth-choice").setAttribute("aria-pressed", String(isDepth));
+  element("color-choice").setAttribute("aria-pressed", String(!isDepth));
+  sendCamera();
 }
 document.addEventListener("visibilitychange", sendCamera);
 

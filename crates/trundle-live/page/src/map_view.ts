@@ -18,6 +18,7 @@ const SHOWN_LOOP_S = 8;
 export interface Layers {
   scan: boolean;
   plan: boolean;
+  waypoints: boolean;
   trail: boolean;
   sigma: boolean;
   visual: boolean;
@@ -46,6 +47,7 @@ export class MapView {
   readonly layers: Layers = {
     scan: true,
     plan: true,
+    waypoints: true,
     trail: true,
     sigma: true,
     visual: false,
@@ -72,6 +74,7 @@ export class MapView {
   private keyframes = new Float32Array();
   private landmarks = new Float32Array();
   private plan = new Float32Array();
+  private waypoints = new Float32Array();
   private trail: number[] = [];
   private isDirty = true;
   private isFitted = false;
@@ -112,15 +115,16 @@ export class MapView {
     this.dirty();
   }
 
-  setPlan(points: Float32Array): void {
+  setPlan(points: Float32Array, waypoints: Float32Array): void {
     this.plan = points as Float32Array<ArrayBuffer>;
+    this.waypoints = waypoints as Float32Array<ArrayBuffer>;
     this.dirty();
   }
 
   /** Another run is shown: path, scan, plan and landmarks were those of the last one. */
   forgetRun(): void {
     this.trail = [];
-    this.scan = this.plan = this.keyframes = this.landmarks = new Float32Array();
+    this.scan = this.plan = this.waypoints = this.keyframes = this.landmarks = new Float32Array();
     this.past = null;
     this.isFitted = false;
     this.dirty();
@@ -296,6 +300,7 @@ export class MapView {
     this.drawLoops();
     if (this.layers.trail) this.drawTrail();
     if (this.layers.plan) this.drawPlan();
+    if (this.layers.waypoints) this.drawWaypoints();
     if (this.layers.scan) this.drawScan();
     if (this.state?.station) this.drawStation(this.state.station);
     this.drawMovers();
@@ -361,6 +366,27 @@ export class MapView {
     context.strokeStyle = this.colors.plan;
     context.lineWidth = 3 * devicePixelRatio;
     context.stroke();
+  }
+
+  /** The way-points of the planner as rings on their straight segments, past which the curve is drawn. */
+  private drawWaypoints(): void {
+    if (this.waypoints.length < 4 || !this.state?.left.length) return;
+    const { context } = this;
+    const ratio = devicePixelRatio;
+    context.strokeStyle = this.colors.plan;
+    context.fillStyle = this.colors.robotEdge;
+    context.lineWidth = 1.5 * ratio;
+    this.line(this.waypoints);
+    context.setLineDash([3 * ratio, 4 * ratio]);
+    context.stroke();
+    context.setLineDash([]);
+    for (let i = 0; i + 1 < this.waypoints.length; i += 2) {
+      const [x, y] = this.toScreen([this.waypoints[i]!, this.waypoints[i + 1]!]);
+      context.beginPath();
+      context.arc(x, y, 4 * ratio, 0, 2 * Math.PI);
+      context.fill();
+      context.stroke();
+    }
   }
 
   private drawScan(): void {

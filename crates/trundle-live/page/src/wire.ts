@@ -1,6 +1,6 @@
 // The messages between page and server. The server's side is crates/trundle-live/src/wire.
 
-export const WIRE_VERSION = 3;
+export const WIRE_VERSION = 4;
 
 export type Pose = [x: number, y: number, theta: number];
 export type Point = [x: number, y: number];
@@ -90,6 +90,17 @@ export interface Place {
   pose: { x: number; y: number; theta: number };
 }
 
+/** The recording of the run. */
+export interface Recording {
+  on: boolean;
+  /** The file that is written, or was written last. */
+  file: string | null;
+  /** Why it is off, where no person switched it off. */
+  reason: string | null;
+  /** Free space of its disk [MB]. */
+  free_mb: number | null;
+}
+
 export interface Setting {
   key: string;
   text: string;
@@ -106,6 +117,7 @@ export type Reply =
   | { type: "refused"; refusal: string }
   | { type: "annotations"; zones: Zone[]; places: Place[] }
   | { type: "settings"; settings: Setting[] }
+  | ({ type: "recording" } & Recording)
   | ({ type: "series" } & Series)
   | { type: "states"; states: StateEntry[] };
 
@@ -123,7 +135,7 @@ export interface TileMessage {
 export type ByteMessage =
   | TileMessage
   | { kind: "scan"; pose: Pose; points: Float32Array }
-  | { kind: "plan"; points: Float32Array }
+  | { kind: "plan"; waypoints: Float32Array; points: Float32Array }
   | { kind: "trail"; poses: Float32Array }
   | { kind: "visual"; keyframes: Float32Array; landmarks: Float32Array }
   | { kind: "features"; width: number; height: number; spots: Float32Array; tracked: boolean[] }
@@ -139,7 +151,7 @@ export function readBytes(buffer: ArrayBuffer): ByteMessage | null {
     case 2:
       return readScan(view);
     case 3:
-      return { kind: "plan", points: new Float32Array(buffer.slice(4)) };
+      return readPlan(view, buffer);
     case 4:
       return { kind: "image", jpeg: new Uint8Array(buffer, 16) };
     case 5:
@@ -153,6 +165,13 @@ export function readBytes(buffer: ArrayBuffer): ByteMessage | null {
     default:
       return null;
   }
+}
+
+/** The way-points of the planner, then the points of its curve. */
+function readPlan(view: DataView, buffer: ArrayBuffer): ByteMessage {
+  const numbers = new Float32Array(buffer.slice(4));
+  const count = 2 * view.getUint16(2, true);
+  return { kind: "plan", waypoints: numbers.slice(0, count), points: numbers.slice(count) };
 }
 
 /** Keyframes as x, y, heading; landmarks as x, y, z. */

@@ -15,7 +15,7 @@ pub async fn file(
     headers: HeaderMap,
 ) -> Response {
     if !may_look(&state, &headers) {
-        return (StatusCode::FORBIDDEN, "this link may not look").into_response();
+        return (StatusCode::FORBIDDEN, "this link may not view the run").into_response();
     }
     let Some(map) = state.operator.view().and_then(|view| view.map.clone()) else {
         return (StatusCode::CONFLICT, "there is no map yet").into_response();
@@ -29,7 +29,7 @@ pub async fn file(
 /// The names of the maps to load, as JSON; for every valid token.
 pub async fn maps(State(state): State<Arc<PageState>>, headers: HeaderMap) -> Response {
     if !may_look(&state, &headers) {
-        return (StatusCode::FORBIDDEN, "this link may not look").into_response();
+        return (StatusCode::FORBIDDEN, "this link may not view the run").into_response();
     }
     // The folder may be slow, as one of another machine.
     let Ok(names) = spawn_blocking(move || state.steering.map_names()).await else {

@@ -82,6 +82,7 @@ impl RunSteering {
             Request::SetPlace { place, .. } => self.edit(&AnnotationEdit::SetPlace(place.clone())),
             Request::RemovePlace { number, .. } => self.edit(&AnnotationEdit::RemovePlace(*number)),
             Request::Change { key, value, .. } => self.change(key, *value),
+            Request::Record { on, .. } => self.record(*on),
             _ => Ok(()),
         }
     }
@@ -139,6 +140,14 @@ impl RunSteering {
         let map = view.as_ref().and_then(|view| view.map.as_deref());
         map.map_or(Ok(()), |map| require_on_map(&zone, map.grid.geometry()))?;
         self.edit(&AnnotationEdit::SetZone(zone))
+    }
+
+    /// The run switches the recording at its next step.
+    fn record(&self, on: bool) -> Result<(), CommandRefusal> {
+        let switch = self.operator.recording();
+        let switch = switch.ok_or_else(|| CommandRefusal::of("This run has no recording to switch."))?;
+        switch.turn(on);
+        Ok(())
     }
 
     fn edit(&self, edit: &AnnotationEdit) -> Result<(), CommandRefusal> {

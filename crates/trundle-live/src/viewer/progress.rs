@@ -9,6 +9,8 @@ pub struct ViewProgress {
     pub seen: AtomicU64,
     /// Whether the page requests images.
     pub wants_images: AtomicBool,
+    /// Whether the page requests the depth of images.
+    pub wants_depth: AtomicBool,
     /// Whether the page requests the visual map.
     pub wants_visual_map: AtomicBool,
 }

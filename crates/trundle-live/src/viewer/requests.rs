@@ -70,8 +70,9 @@ impl Viewer<'_> {
                 self.progress.seen.fetch_max(*batch, Ordering::Relaxed);
                 return None;
             }
-            Request::Camera { on } => {
+            Request::Camera { on, depth } => {
                 self.progress.wants_images.store(*on, Ordering::Relaxed);
+                self.progress.wants_depth.store(*depth, Ordering::Relaxed);
                 return None;
             }
             Request::VisualMap { on } => {

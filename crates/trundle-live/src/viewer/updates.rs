@@ -5,16 +5,16 @@ use super::progress::ViewProgress;
 use crate::page_state::PageState;
 use crate::viewer_list::ViewerId;
 use crate::wire::{
-    Reply, SeriesText, SettingText, StateMessage, TileCursor, WheelText, depth_message, features_message,
-    image_message, path_message, scan_message, trail_message, visual_map_message,
+    RecordingText, Reply, SeriesText, SettingText, StateMessage, TileCursor, WheelText, depth_message,
+    features_message, image_message, path_message, scan_message, trail_message, visual_map_message,
 };
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 use tokio::sync::mpsc::Receiver;
 use tokio::time::{Instant, MissedTickBehavior, interval};
-use trundle_app::operator::{FeatureView, RunView, SeriesView, VisualMapView};
-use trundle_core::{MapAnnotations, Stamp, Trajectory};
+use trundle_app::operator::{FeatureView, PlanView, RunView, SeriesView, VisualMapView};
+use trundle_core::{MapAnnotations, Stamp};
 use trundle_runtime::RunSetting;
 
 /// Period of views. Source: ours.
@@ -62,7 +62,7 @@ struct Updates {
     view_sent: Instant,
     tiles: TileCursor,
     scan: Option<Stamp>,
-    plan: Option<Arc<Trajectory>>,
+    plan: Option<Arc<PlanView>>,
     image: Option<Stamp>,
     image_sent: Instant,
     /// Number of the view with the last image.
@@ -79,10 +79,11 @@ struct SentNotes {
     annotations: Option<Arc<MapAnnotations>>,
     settings: Option<[RunSetting; 2]>,
     series: Option<Arc<SeriesView>>,
+    recording: Option<RecordingText>,
 }
 
 impl SentNotes {
-    /// Zones, places, settings and series that changed.
+    /// Zones, places, settings, series and recording that changed.
     fn changed(&mut self, view: &RunView, state: &PageState) -> Vec<Reply> {
         let annotations = state.operator.annotations();
         let is_new = self.annotations.as_ref().is_none_or(|known| !Arc::ptr_eq(known, &annotations));
@@ -93,7 +94,15 @@ impl SentNotes {
         let limits = &state.facts.limits;
         let text = |setting: &RunSetting| SettingText::of(*setting, limits);
         let settings = changed.map(|all| Reply::Settings { settings: all.iter().map(text).collect() });
-        zones.into_iter().chain(settings).chain(self.series_note(state)).collect()
+        let others = self.series_note(state).into_iter().chain(self.recording_note(state));
+        zones.into_iter().chain(settings).chain(others).collect()
+    }
+
+    fn recording_note(&mut self, state: &PageState) -> Option<Reply> {
+        let recording = RecordingText::of(&state.operator.recording()?.state());
+        let is_new = self.recording.as_ref() != Some(&recording);
+        self.recording = Some(recording.clone());
+        is_new.then_some(Reply::Recording(recording))
     }
 
     fn series_note(&mut self, state: &PageState) -> Option<Reply> {
@@ -187,7 +196,9 @@ impl Updates {
         if progress.wants_images.load(Ordering::Relaxed) {
             parts.extend(self.features_part(view));
             parts.extend(self.image_part(view, progress));
-            parts.extend(self.depth_part(view));
+            if progress.wants_depth.load(Ordering::Relaxed) {
+                parts.extend(self.depth_part(view));
+            }
         }
         if progress.wants_visual_map.load(Ordering::Relaxed) {
             parts.extend(self.visual_map_part(view));
@@ -227,8 +238,8 @@ impl Updates {
 
     /// The depth is only sent together with its image.
     fn depth_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
-        let depth = view.perception.depth.as_ref()?;
-        (self.image_batch == self.batch).then(|| depth_message(depth))
+        let depth = view.perception.depth.as_ref().filter(|_| self.image_batch == self.batch)?;
+        depth.picture().map(depth_message)
     }
 
     fn features_part(&mut self, view: &RunView) -> Option<Vec<u8>> {

@@ -7,10 +7,10 @@
 //! | 1 each | depth of a pixel \[4 cm\], row by row; 0: not measured |
 
 use super::Kind;
-use trundle_app::operator::DepthView;
+use trundle_app::operator::DepthPicture;
 
 /// The message of a depth image.
-pub fn depth_message(depth: &DepthView) -> Vec<u8> {
+pub fn depth_message(depth: &DepthPicture) -> Vec<u8> {
     let mut bytes = vec![Kind::Depth as u8, 0];
     bytes.extend((depth.width as u16).to_le_bytes());
     bytes.extend(&depth.pixels);
@@ -20,11 +20,10 @@ pub fn depth_message(depth: &DepthView) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trundle_core::Stamp;
 
     #[test]
     fn width_and_pixels_are_sent() {
-        let depth = DepthView { stamp: Stamp::default(), width: 2, pixels: vec![0, 50, 255, 1] };
+        let depth = DepthPicture { width: 2, pixels: vec![0, 50, 255, 1] };
         assert_eq!(depth_message(&depth), [8, 0, 2, 0, 0, 50, 255, 1]);
     }
 }

@@ -20,7 +20,7 @@ pub use features::features_message;
 pub use image::image_message;
 pub use map_tiles::{MapTiles, TileCursor};
 pub use path::{path_message, trail_message};
-pub use reply::{Reply, SeriesText, StateEntry, Welcome};
+pub use reply::{RecordingText, Reply, SeriesText, StateEntry, Welcome};
 pub use request::{Goal, Request};
 pub use run_setting::SettingText;
 pub use scan::scan_message;
@@ -28,7 +28,7 @@ pub use state::{StateMessage, WheelText};
 pub use visual_map::visual_map_message;
 
 /// Version of the messages. A page of another version reloads itself. Source: ours.
-pub const WIRE_VERSION: u32 = 3;
+pub const WIRE_VERSION: u32 = 4;
 
 /// First byte of a message of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,7 +38,7 @@ pub enum Kind {
     MapTiles = 1,
     /// The points of a scan.
     Scan = 2,
-    /// The planned path.
+    /// The planned path with its way-points.
     Plan = 3,
     /// A colour image.
     Image = 4,

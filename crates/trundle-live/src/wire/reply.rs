@@ -3,6 +3,7 @@
 use super::SettingText;
 use crate::run_facts::RunKind;
 use serde::Serialize;
+use trundle_app::RecordingState;
 use trundle_app::operator::{EndedRun, SeriesView};
 use trundle_core::{DriveLimits, Footprint, MapAnnotations};
 
@@ -41,6 +42,8 @@ pub enum Reply {
     },
     /// Progress of the series that contains the run.
     Series(SeriesText),
+    /// State of the recording.
+    Recording(RecordingText),
     /// States of the robot since some time ago.
     States {
         /// States in the order of time.
@@ -90,6 +93,30 @@ pub struct SeriesText {
     pub ended: usize,
     /// The last finished runs, in the order of their ends.
     pub last: Vec<EndedRunText>,
+}
+
+/// State of a run's recording.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct RecordingText {
+    /// Whether a file is being written.
+    pub on: bool,
+    /// Name of the present or last file.
+    pub file: Option<String>,
+    /// Reason why the recording is off, unless a person switched it off.
+    pub reason: Option<String>,
+    /// Free space of the disk \[MB\].
+    pub free_mb: Option<u64>,
+}
+
+/// Number of bytes in a megabyte. Source: SI.
+const BYTES_PER_MB: u64 = 1_000_000;
+
+impl RecordingText {
+    /// The text of a state.
+    pub fn of(state: &RecordingState) -> Self {
+        let RecordingState { is_on: on, file, reason, free_bytes, .. } = state.clone();
+        Self { on, file, reason, free_mb: free_bytes.map(|bytes| bytes / BYTES_PER_MB) }
+    }
 }
 
 /// A run that has ended.

@@ -26,6 +26,9 @@ pub enum Request {
     Camera {
         /// Whether to send them.
         on: bool,
+        /// Whether to send their depth too.
+        #[serde(default)]
+        depth: bool,
     },
     /// Send the visual map, or do not.
     VisualMap {
@@ -123,6 +126,13 @@ pub enum Request {
         /// Value of the setting, in the unit of the key.
         value: f64,
     },
+    /// Begin a recording, or end it.
+    Record {
+        /// Number of the request.
+        id: u64,
+        /// Whether to record.
+        on: bool,
+    },
     /// Another map of the folder of maps in place of the present one.
     LoadMap {
         /// Number of the request.
@@ -176,6 +186,7 @@ impl Request {
             | Self::SetPlace { id, .. }
             | Self::RemovePlace { id, .. }
             | Self::Change { id, .. }
+            | Self::Record { id, .. }
             | Self::LoadMap { id, .. }
             | Self::TakeWheel { id }
             | Self::LeaveWheel { id } => Some(*id),

@@ -59,7 +59,7 @@ impl LiveRun {
         let tokens = Tokens::random().unwrap();
         let address = "127.0.0.1:0".parse().unwrap();
         let maps = Some(MapFolder::open(place.path().to_owned(), setup.robot.clone()).unwrap());
-        let options = LiveOptions { address, tokens: tokens.clone(), is_steered, maps };
+        let options = LiveOptions::new(address, tokens.clone(), is_steered, maps);
         let page = LivePage::start(options, operator.clone(), RunFacts::of(&setup).unwrap()).unwrap();
         let is_over = Arc::<AtomicBool>::default();
         let mut body = PacedBody { step: 0, is_over: Arc::clone(&is_over) };

@@ -74,3 +74,21 @@ fn a_given_pose_moves_the_robot_on_the_map() {
     let given = Pose2::new(3.0, -1.0, 0.5);
     run.wait_for("the pose", |view| view.estimate.pose.distance(&given) < 0.05);
 }
+
+#[test]
+fn a_recording_is_switched_and_its_state_is_shown() {
+    let run = LiveRun::start();
+    let mut viewer = Browser::enter(&run, Access::View, "viewer");
+    assert!(viewer.ask(json!({"type": "record", "on": false})).unwrap().contains("for viewing only"));
+    let mut driver = Browser::enter(&run, Access::Drive, "driver");
+    let first = driver.wait_for("recording");
+    assert_eq!((&first["on"], &first["file"]), (&json!(true), &json!("recording.mcap")));
+    let mut turn = |on: bool| {
+        assert_eq!(driver.ask(json!({"type": "record", "on": on})), None);
+        std::iter::from_fn(|| Some(driver.wait_for("recording"))).find(|state| state["on"] == on).unwrap()
+    };
+    assert_eq!(turn(false)["reason"], json!(null));
+    let second = turn(true);
+    assert_eq!(second["file"], "recording-2.mcap");
+    assert!(second["free_mb"].as_u64().is_some_and(|free| free > 0), "{second}");
+}

@@ -1,14 +1,15 @@
 //! Quality of the map of a laser log over several seeds: `cargo run --release -p trundle-mapping --example carmen_bench -- LOG [--seeds N]
-//! [--particles N] [--laser-x M] [--pgm FILE] [--traj FILE] [--but A..B]`. With `--but` it also prints the mean error without relations
-//! that touch these poses of the reference.
+//! [--particles N] [--laser-x M] [--pgm FILE] [--traj FILE] [--relations FILE] [--but A..B]`. With `--but` it also prints the mean error
+//! without relations that touch these poses of the reference.
 //!
-//! Beside `X.log` a `X.ref.traj` (`t x y theta` lines) is taken as the reference.
+//! The reference is `--relations FILE` (surveyed relations, lines of `t1 t2 x y z roll pitch yaw`), else `X.ref.traj` (lines of
+//! `t x y theta`) beside `X.log`.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs, reason = "a measurement for the terminal")]
 
 mod log;
 mod relations;
 
-use relations::{Agreement, Relation, relations};
+use relations::{Agreement, Relation, relations, surveyed};
 use trundle_core::{Cell, OccupancyGrid, Pose2, Stamp};
 use trundle_mapping::{ParticleConfig, ParticleMapper, ScanUpdate, propagate_trajectory};
 
@@ -73,12 +74,15 @@ fn main() {
     let path = std::env::args().nth(1).expect("a log");
     let laser_x = option("--laser-x").unwrap_or(0.0);
     let log = log::Log::read(&path, laser_x);
-    let config =
-        ParticleConfig { particles: option("--particles").unwrap_or(30), ..ParticleConfig::default() };
+    let mut config = ParticleConfig::default();
+    config.particles = option("--particles").unwrap_or(30);
     let first: u64 = option("--first").unwrap_or(1);
     let seeds: u64 = option("--seeds").unwrap_or(1);
     let reference = log::read_trajectory(&path.replace(".log", ".ref.traj"));
-    let relations: Vec<Relation> = reference.as_deref().map(relations).unwrap_or_default();
+    let relations: Vec<Relation> = match option::<String>("--relations") {
+        Some(file) => surveyed(&std::fs::read_to_string(&file).unwrap()),
+        None => reference.as_deref().map(relations).unwrap_or_default(),
+    };
     println!("{} scans, {} relations", log.scans.len(), relations.len());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let but = option::<String>("--but").map(|text| {

@@ -22,6 +22,27 @@ pub struct Relation {
     poses: (usize, usize),
 }
 
+/// Smallest displacement in time between the poses of a loop, s: the relations of a file of that length or more are loops. Source: ours,
+/// ten metres of path take less.
+const LOOP_S: f64 = 60.0;
+
+/// The surveyed relations of a file: lines of `t1 t2 x y z roll pitch yaw` (s, s, m, rad), as those of \[Kuemmerle09\].
+pub fn surveyed(text: &str) -> Vec<Relation> {
+    let relation = |line: &str| {
+        let numbers: Vec<f64> = line.split_whitespace().map(|word| word.parse().unwrap()).collect();
+        let [from, to, x, y, _, _, _, yaw] = numbers[..] else { panic!("8 numbers: {line}") };
+        let relative = Pose2::new(x, y, yaw);
+        let kind = match (to - from).abs() {
+            duration if duration >= LOOP_S => EntryKind::Loop,
+            _ if relative.position().norm() < 5.0 => EntryKind::Near,
+            _ => EntryKind::Far,
+        };
+        let stamp = |seconds: f64| Stamp::from_nanos((seconds * 1e9).round() as i64);
+        Relation { kind, from: stamp(from), to: stamp(to), relative, poses: (0, 0) }
+    };
+    text.lines().filter(|line| !line.trim().is_empty()).map(relation).collect()
+}
+
 /// The relations of a reference trajectory.
 pub fn relations(reference: &[(Stamp, Pose2)]) -> Vec<Relation> {
     let mut found = Vec::new();

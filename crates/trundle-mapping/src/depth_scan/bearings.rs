@@ -184,7 +184,13 @@ impl Bearings {
     }
 }
 
-/// Standard deviation of a range, m: the noise of its depth over the floor.
+/// Standard deviation of a range, m: the noise of its depth over the floor. At most the range: along an almost vertical ray, the noise of
+/// the depth can be of any size.
 fn sigma(range: f32, view: &BeamView, model: &PixelModel) -> f32 {
-    if view.run > 0.0 { view.run * model.noise.sigma(range / view.run) } else { model.noise.sigma(range) }
+    let noise = if view.run > 0.0 {
+        view.run * model.noise.sigma(range / view.run)
+    } else {
+        model.noise.sigma(range)
+    };
+    noise.min(range)
 }

@@ -6,13 +6,14 @@ use trundle_core::{Invalid, require_in};
 /// Rules that classify pixels of a depth image as obstacles or free space.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct DepthScanConfig {
     /// Lower edge of the height band, m above the floor, 0 to 1. Lower objects are no obstacles: the robot drives over them. Default 0.05 (ours).
     pub band_low: f64,
     /// Upper edge of the height band, m above the floor, above `band_low`, to 5. Higher objects are no obstacles: the robot drives under
     /// them. Default 0.65: a Kobuki with its camera is 0.6 m high.
     pub band_high: f64,
-    /// Smallest depth used, m, 0.05 to 5. Pixels below it are ignored. Default 0.3; the Kinect V2 measures from 0.5 on.
+    /// Smallest depth used, m, 0.05 to 5. Pixels below it are ignored. Default 0.3 (ours): the Kinect V2 measures from 0.5 m on \[Li18\].
     pub min_depth: f64,
     /// Largest depth used, m, above `min_depth`, to 100. Pixels beyond it are ignored. Default 8: the Kinect V2's range \[Li18\].
     pub max_depth: f64,
@@ -33,7 +34,7 @@ pub struct DepthScanConfig {
     /// Largest tilt of a fitted floor against the mount's floor, deg, 0 (no fit) to 10. Heights are measured from the fitted floor. Default
     /// 3 (ours).
     pub floor_fit_deg: f64,
-    /// Depth below the floor from which a point is a hole, m, 0.02 to 1. The robot stops before a hole as before an obstacle. Default 0.1:
+    /// Smallest depth below the floor at which a point is a hole, m, 0.02 to 1. The robot stops before a hole as before an obstacle. Default 0.1:
     /// a Kobuki's wheel drops 0.04.
     pub drop_depth: f64,
     /// Smallest number of a pixel's 8 neighbours with similar depth for an obstacle, 0 to 8. A larger value drops noise and thin objects.

@@ -2,7 +2,7 @@
 
 use super::{DepthScanConfig, FloorFit, pixel_model::PixelModel, pixel_rays::LensRays};
 use nalgebra::{Cholesky, Matrix3, Vector3 as Column};
-use trundle_core::{DepthImage, Pose3};
+use trundle_core::{DepthImage, Hypotenuse, Pose3};
 
 /// Thinned pixels whose rays meet the floor of the mount.
 #[derive(Debug, Clone)]
@@ -75,7 +75,7 @@ impl FloorSamples {
             p.rise < 0.0
                 && depth >= config.min_depth
                 && depth <= config.max_depth
-                && depth * p.ahead.hypot(p.left) <= MAX_SAMPLE_RANGE_M
+                && depth * p.ahead.hypotenuse(p.left) <= MAX_SAMPLE_RANGE_M
         };
         let mut pixels: Vec<SamplePixel> = (0..lens.len()).map(pixel).filter(meets_floor).collect();
         // A step that shares no factor with the width spreads the samples over rows and columns.

@@ -20,7 +20,7 @@ pub(super) struct PixelModel {
     pub(super) floor_sigmas: f32,
     /// Unknown rise of the floor, m/m.
     pub(super) tilt: f32,
-    /// Depth below the floor from which a point counts as a hole, m.
+    /// Smallest depth below the floor at which a point counts as a hole, m.
     pub(super) drop_depth: f32,
     pub(super) bins_per_metre: f32,
     pub(super) min_support: NeighbourSupport,

@@ -10,6 +10,7 @@ use trundle_core::{
 /// Settings of the fusion of scans.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ScanFusionConfig {
     /// Number of beams of the full circle, 16 to 7200. Default 720: half a degree, some columns of a Kinect.
     pub beams: usize,

@@ -137,7 +137,7 @@ impl StoredScan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trundle_core::{Beam, FreeSpan, Scan, ScanParts, Stamp, Vector2};
+    use trundle_core::{Beam, FreeSpan, Hypotenuse, Scan, ScanParts, Stamp, Vector2};
 
     #[test]
     fn packing_keeps_all_data_of_the_beams() {
@@ -161,6 +161,9 @@ mod tests {
         let sigma = |shape: &ScanPoints| shape.points.iter().map(|p| p.information).collect::<Vec<_>>();
         let (given, kept) = (sigma(&shape), sigma(&again));
         assert!((given[0] - kept[0]).abs() < 1e-3 * given[0], "{given:?} {kept:?}");
-        assert!((0.05 / 0.255_f32.hypot(0.015)).powi(2) - kept[1] < 1e-4, "a sigma is kept up to 255 mm");
+        assert!(
+            (0.05 / 0.255_f32.hypotenuse(0.015)).powi(2) - kept[1] < 1e-4,
+            "a sigma is kept up to 255 mm"
+        );
     }
 }

@@ -4,6 +4,7 @@ use trundle_core::Invalid;
 
 /// Reason why a saved filter was not loaded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FilterFileError {
     /// The file is not a filter of this program.
     #[error("this is not a filter map of trundle (filter.map)")]

@@ -47,3 +47,6 @@ pub(crate) fn read(bytes: &mut Reader<'_>) -> Result<StoredScan, FilterFileError
     }
     Ok(StoredScan { origin, rays: rays.into(), sigmas: sigmas.into(), spans: spans.into() })
 }
+
+#[cfg(test)]
+mod tests;

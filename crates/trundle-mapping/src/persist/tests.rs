@@ -160,3 +160,19 @@ fn fewer_particles_are_the_heaviest_and_more_are_all_in_turn() {
     assert_eq!(chosen(&log_weights, 5), [0, 1, 2, 3, 4]);
     assert_eq!(chosen(&log_weights, 7), [0, 1, 2, 3, 4, 0, 1]);
 }
+
+/// The error of a truncated file names the part in which the file ends: parts follow each other in the order of the file.
+#[test]
+fn a_truncation_is_reported_in_the_part_where_it_is() {
+    let bytes = filter().save();
+    let mut parts: Vec<&str> = Vec::new();
+    for end in HEADER_BYTES..bytes.len() {
+        if let Err(FilterFileError::Cut { within }) =
+            ParticleMapper::load(&signed(bytes[..end].to_vec()), config())
+            && parts.last() != Some(&within)
+        {
+            parts.push(within);
+        }
+    }
+    assert_eq!(parts, ["settings", "particles", "tiles", "trajectories", "scans", "loops"]);
+}

@@ -7,3 +7,6 @@ mod uncertainty_paths;
 pub(crate) use constraint::Constraint;
 pub(crate) use solver::solve;
 pub(crate) use uncertainty_paths::{RelativeUncertainty, reach};
+
+#[cfg(test)]
+mod tests;

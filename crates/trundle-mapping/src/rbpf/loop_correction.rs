@@ -30,7 +30,7 @@ pub(crate) struct LoopCorrector {
     crowded_at: usize,
 }
 
-/// Smallest number of stored scans from which redundant ones are dropped: a drive of a kilometre. Source: ours.
+/// Smallest number of stored scans at which redundant ones are dropped: a drive of a kilometre. Source: ours.
 const MIN_CROWDED_SCANS: usize = 4000;
 
 impl Default for LoopCorrector {

@@ -11,7 +11,7 @@ use crate::scan_match::motion_prior::MotionPrior;
 use crate::scan_match::pose_optimizer::{Optimum, PoseOptimizer, difference};
 use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Cholesky, Matrix3, Vector3};
-use trundle_core::Pose2;
+use trundle_core::{Hypotenuse, Pose2};
 use trundle_grid::tiles::{Tile, TileMap, TileWindow};
 
 /// The improved proposal of \[Grisetti07\] for one particle.
@@ -231,7 +231,7 @@ impl Proposer<'_> {
         for p in &self.points.points {
             let (px, py) = (f64::from(p.x), f64::from(p.y));
             let (dx, dy) = (c * px - s * py, s * px + c * py);
-            let far = px.hypot(py);
+            let far = px.hypotenuse(py);
             let (right, up) = if turns { (far, far) } else { (dx, dy) };
             let (left, down) = if turns { (-far, -far) } else { (dx, dy) };
             low = (low.0.min(guess.x + left), low.1.min(guess.y + down));

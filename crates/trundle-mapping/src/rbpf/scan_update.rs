@@ -32,6 +32,7 @@ pub struct MappingPause {
 
 /// Reason why a scan was not used.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Refusal {
     /// The odometry is not finite.
     NotFinite,

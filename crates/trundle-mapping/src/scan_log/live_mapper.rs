@@ -2,6 +2,7 @@
 
 use crate::grid_mapper::{GridMapper, Insertion};
 use crate::scan_log::entry::{EntryData, EntryKind, LogEntry, halve_the_older_half, thin};
+use crate::scan_match::MatchedMap;
 use std::sync::Arc;
 use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 use trundle_grid::{LogOddsGrid, MapperConfig};
@@ -18,6 +19,8 @@ pub struct LiveMapper {
     front: GridMapper,
     /// Evidence from before the first scan.
     known: LogOddsGrid,
+    /// Whether scans are matched to `known` where it is known.
+    is_given: bool,
     kept: Vec<LogEntry>,
     snapshots: Vec<Snapshot>,
     /// Number of log entries between snapshots.
@@ -67,7 +70,7 @@ impl LiveMapper {
         Ok(Self::over(GridMapper::new(config)?))
     }
 
-    /// A map that continues from a saved one. Corrections do not move the saved part.
+    /// A map that continues from one of the robot's own drawing. Corrections do not move the saved part.
     ///
     /// # Errors
     /// As [`GridMapper::from_grid`].
@@ -75,11 +78,20 @@ impl LiveMapper {
         Ok(Self::over(GridMapper::from_grid(config, grid)?))
     }
 
+    /// A map that begins with a given one, to which scans are matched where it is known. Corrections do not move the given part.
+    ///
+    /// # Errors
+    /// As [`GridMapper::from_grid`].
+    pub fn on_given(config: MapperConfig, grid: &OccupancyGrid) -> Result<Self, Invalid> {
+        Ok(Self { is_given: true, ..Self::from_grid(config, grid)? })
+    }
+
     fn over(front: GridMapper) -> Self {
         let known = front.evidence().clone();
         Self {
             front,
             known,
+            is_given: false,
             kept: Vec::new(),
             snapshots: Vec::new(),
             every: SNAPSHOT_INTERVAL,
@@ -161,6 +173,16 @@ impl LiveMapper {
     /// The map in use.
     pub fn mapper(&self) -> &GridMapper {
         &self.front
+    }
+
+    /// The map that scans are matched to.
+    pub fn matched_map(&self) -> MatchedMap<'_> {
+        if self.is_given { MatchedMap::over(&self.front, &self.known) } else { (&self.front).into() }
+    }
+
+    /// Whether a point of the map frame (m) is in the known part of a given map.
+    pub fn is_given_at(&self, point: Vector2) -> bool {
+        self.matched_map().is_given(point)
     }
 
     /// Three-valued grid of the map.

@@ -7,7 +7,7 @@ use crate::scan_match::motion_prior::MotionPrior;
 use crate::scan_match::pose_optimizer::PoseOptimizer;
 use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::Matrix3;
-use trundle_core::Pose2;
+use trundle_core::{Hypotenuse, Pose2};
 use trundle_grid::tiles::{TileMap, TileWindow};
 
 /// A place where a cloud of hits fits a map.
@@ -135,7 +135,8 @@ impl CloudMatcher<'_> {
 
     fn window<'m>(&self, map: &'m TileMap, pose: Pose2) -> TileWindow<'m> {
         const MARGIN: f64 = 24.0;
-        let far = self.cloud.points.iter().map(|p| f64::from(p.x.hypot(p.y))).fold(0.0, f64::max) + MARGIN;
+        let far =
+            self.cloud.points.iter().map(|p| f64::from(p.x.hypotenuse(p.y))).fold(0.0, f64::max) + MARGIN;
         let cell = |v: f64| v.floor() as i32;
         TileWindow::new(
             map,

@@ -12,6 +12,7 @@ use trundle_grid::tiles::TileMap;
 
 /// Reason why the pose is unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Lost {
     /// The map is empty, or the scans have too few points.
     NothingToSee,

@@ -101,7 +101,7 @@ impl Likelihood {
             // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.evaluate_by_avx2(to, window, shape, pose) };
         }
-        self.tell_plainly(to, window, shape, pose);
+        self.evaluate_portably(to, window, shape, pose);
     }
 
     /// The same arithmetic in vectors of eight, with the order of all sums: the same bits.
@@ -114,21 +114,27 @@ impl Likelihood {
         shape: &ScanPoints,
         pose: Pose2,
     ) {
-        self.tell_each(to, window, shape, pose);
+        self.evaluate_each(to, window, shape, pose);
     }
 
-    fn tell_plainly<L: PointSink>(
+    fn evaluate_portably<L: PointSink>(
         &self,
         to: &mut L,
         window: &TileWindow<'_>,
         shape: &ScanPoints,
         pose: Pose2,
     ) {
-        self.tell_each(to, window, shape, pose);
+        self.evaluate_each(to, window, shape, pose);
     }
 
     #[inline(always)]
-    fn tell_each<L: PointSink>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanPoints, pose: Pose2) {
+    fn evaluate_each<L: PointSink>(
+        &self,
+        to: &mut L,
+        window: &TileWindow<'_>,
+        shape: &ScanPoints,
+        pose: Pose2,
+    ) {
         let place = RotatedPose::new(pose);
         for group in &shape.groups {
             to.take(self, group, &self.residuals(window, group, &place));
@@ -318,8 +324,8 @@ mod tests {
             shape.set(&config, &scan);
             let (window, pose) = (TileWindow::new(&map, (0, 0), (191, 127)), Pose2::new(x, 60.0, theta));
             let (mut sum, mut sums) = (0.0_f32, Sums::default());
-            likelihood.tell_plainly(&mut sum, &window, &shape, pose);
-            likelihood.tell_plainly(&mut sums, &window, &shape, pose);
+            likelihood.evaluate_portably(&mut sum, &window, &shape, pose);
+            likelihood.evaluate_portably(&mut sums, &window, &shape, pose);
             prop_assert_eq!(likelihood.log_likelihood(&window, &shape, pose).to_bits(), f64::from(sum).to_bits());
             prop_assert_eq!(likelihood.equations(&window, &shape, pose), sums.equations());
         }

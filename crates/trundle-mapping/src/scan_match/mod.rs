@@ -14,7 +14,7 @@ pub(crate) mod pose_optimizer;
 pub(crate) mod scan_points;
 
 pub use global_search::Lost;
-pub use kernel_density::{ScanMatch, ScanMatchConfig, ScanMatcher};
+pub use kernel_density::{MatchedMap, ScanMatch, ScanMatchConfig, ScanMatcher};
 
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use crate::particle_config::ParticleConfig;
 use crate::scan_match::point_spread::{PointSpread, thinned};
 use std::collections::BTreeSet;
-use trundle_core::{Beam, Pose2, Scan, Vector2};
+use trundle_core::{Beam, Hypotenuse, Pose2, Scan, Vector2, tanh_f32};
 use trundle_grid::tiles::{RaySpan, ScanRay, ScanRays};
 
 /// A scan prepared for many particles: in cells, base frame, with surfaces and their normals.
@@ -203,7 +203,7 @@ impl ScanPoints {
             let usual = config.range_noise + config.range_noise_growth * range * range;
             let range_sigma = if own > 0.0 { own } else { usual };
             // A cell's obstacle is known to about a fifth of the cell.
-            let sigma = range_sigma.hypot(0.3 * config.map.resolution);
+            let sigma = range_sigma.hypotenuse(0.3 * config.map.resolution);
             let normal = self.normal(k, sigma).map_or((0.0, 0.0), |n| (n.x as f32, n.y as f32));
             self.points.push(ScanPoint {
                 x: (hit.x * cells) as f32,
@@ -261,6 +261,6 @@ impl ScanPoints {
 /// belong to a neighbouring cell gets less weight.
 fn hit_weight(sigma: f32) -> f32 {
     // Within h sigmas: tanh(0.8 h) to 0.02.
-    let within = |sigma: f32| (0.4 / sigma).tanh();
+    let within = |sigma: f32| tanh_f32(0.4 / sigma);
     if sigma <= 0.5 { 1.0 } else { within(sigma) / within(0.5) }
 }

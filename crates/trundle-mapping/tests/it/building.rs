@@ -207,7 +207,8 @@ fn loops_of_corridors_are_closed_whatever_the_seed() {
     let building = Building::ladder();
     for seed in 1..=2 {
         let drive = building.drive(seed);
-        let config = ParticleConfig { particles: 6, ..ParticleConfig::default() };
+        let mut config = ParticleConfig::default();
+        config.particles = 6;
         let mut mapper = ParticleMapper::new(config, seed).unwrap();
         let mut bends = 0;
         for (odom, scan) in drive.odom.iter().zip(&drive.scans) {

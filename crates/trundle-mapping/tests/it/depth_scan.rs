@@ -32,6 +32,17 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
+    fn every_depth_and_mount_makes_a_scan(
+        height in 0.2..1.5_f64, yaw in -180.0..180.0_f64, tilt in -89.9..89.9_f64, roll in -180.0..180.0_f64, depth in 0.3..66.0_f32,
+    ) {
+        let pose = mounted([0.0, 0.0, height], yaw, tilt, roll);
+        if let Ok(mut scanner) = DepthScanner::new(small_camera(), pose, DepthScanConfig::default()) {
+            let scan = scanner.scan(&rgbd(DepthImage::filled(128, 106, depth)));
+            prop_assert!((0..scan.beams().len()).all(|i| scan.sigma(i).is_none_or(f64::is_finite)));
+        }
+    }
+
+    #[test]
     fn a_wall_is_where_it_is(
         distance in 1.0..5.0_f64, height in 0.2..1.0_f64, tilt in 0.0..20.0_f64, yaw in -30.0..30.0_f64,
         roll in -15.0..15.0_f64, wall in 1.0..2.5_f64,
@@ -184,7 +195,8 @@ fn bad_mounts_are_refused_by_name() {
         |pose| DepthScanner::new(small_camera(), pose, DepthScanConfig::default()).unwrap_err().field;
     assert_eq!(refuse(mount(0.0, 0.0)), "camera height above the floor");
     assert_eq!(refuse(mount(f64::NAN, 0.0)), "base_from_camera");
-    let config = DepthScanConfig { band_high: 0.01, ..DepthScanConfig::default() };
+    let mut config = DepthScanConfig::default();
+    config.band_high = 0.01;
     assert_eq!(DepthScanner::new(small_camera(), mount(0.4, 0.0), config).unwrap_err().field, "band_high");
 }
 
@@ -326,7 +338,9 @@ fn two_cameras_make_one_scan() {
     let right = mounted([0.05, -0.1, 0.45], -50.0, 8.0, 0.0);
     let solids = [Solid::wall(2.0, 2.0), Solid::new([0.8, 0.7, 0.0], [1.0, 0.9, 0.5])];
     let scans = [scan(left, &solids), scan(right, &solids)];
-    let mut fusion = ScanFusion::new(ScanFusionConfig { beams: 360, ..Default::default() }).unwrap();
+    let mut config = ScanFusionConfig::default();
+    config.beams = 360;
+    let mut fusion = ScanFusion::new(config).unwrap();
     let fused = fusion.fuse(scans.iter().map(|scan| (Pose2::IDENTITY, scan)));
     assert_eq!((fused.beams().len(), fused.origin()), (360, Vector2::zeros()));
     let seen: Vec<Vector2> = fused.hits().collect();
@@ -347,10 +361,9 @@ fn two_cameras_make_one_scan() {
     };
     assert!(free_at(Vector2::new(0.8, -0.8)) && free_at(Vector2::new(1.5, 0.9)));
     assert!(!free_at(Vector2::new(-1.0, 0.0)) && !free_at(Vector2::new(1.35, 1.2)));
-    assert_eq!(
-        ScanFusion::new(ScanFusionConfig { beams: 3, ..Default::default() }).unwrap_err().field,
-        "beams"
-    );
+    let mut config = ScanFusionConfig::default();
+    config.beams = 3;
+    assert_eq!(ScanFusion::new(config).unwrap_err().field, "beams");
     assert!(fusion.fuse([]).beams().iter().all(|beam| *beam == Beam::Unseen));
 }
 

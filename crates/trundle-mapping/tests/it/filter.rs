@@ -93,7 +93,9 @@ pub fn laser(room: &FlatRoom, pose: Pose2, i: usize) -> Scan {
 }
 
 pub fn config(particles: usize) -> ParticleConfig {
-    ParticleConfig { particles, ..ParticleConfig::default() }
+    let mut config = ParticleConfig::default();
+    config.particles = particles;
+    config
 }
 
 fn run(
@@ -148,7 +150,9 @@ fn poses_that_do_not_drift_are_believed_as_poses() {
     };
     let prior: Vec<Pose2> = poses.iter().enumerate().map(|(i, pose)| *pose * shake(i)).collect();
     let worst = |pose_prior: Option<PosePriorConfig>| {
-        let (mapper, _) = run(&room, &poses, &prior, ParticleConfig { pose_prior, ..config(10) }, 1);
+        let mut config = config(10);
+        config.pose_prior = pose_prior;
+        let (mapper, _) = run(&room, &poses, &prior, config, 1);
         let mut worst = 0.0_f64;
         for (stamp, pose) in mapper.trajectory() {
             let i = ((stamp - Stamp::from_nanos(1_000_000_000)) / 0.2).round() as usize;
@@ -163,7 +167,8 @@ fn poses_that_do_not_drift_are_believed_as_poses() {
 
 /// A new filter that accepts poses, and the first `count` scans of the lap at poses that are right.
 fn believing(count: usize) -> (ParticleMapper, FlatRoom, Vec<Pose2>) {
-    let config = ParticleConfig { pose_prior: Some(PosePriorConfig::default()), ..config(3) };
+    let mut config = config(3);
+    config.pose_prior = Some(PosePriorConfig::default());
     let (mut mapper, room, poses) = (ParticleMapper::new(config, 1).unwrap(), ring(), lap());
     for (i, pose) in poses.iter().enumerate().take(count) {
         mapper.update(*pose, &laser(&room, *pose, i));
@@ -207,11 +212,9 @@ fn wild_poses_that_agree_five_times_are_believed() {
 #[test]
 fn a_saved_filter_goes_on_believing_poses() {
     let (mut whole, room, poses) = believing(40);
-    let mut again = ParticleMapper::load(
-        &whole.save(),
-        ParticleConfig { pose_prior: Some(PosePriorConfig::default()), ..config(3) },
-    )
-    .unwrap();
+    let mut config = config(3);
+    config.pose_prior = Some(PosePriorConfig::default());
+    let mut again = ParticleMapper::load(&whole.save(), config).unwrap();
     for (i, pose) in poses.iter().enumerate().skip(40).take(40) {
         let scan = laser(&room, *pose, i);
         assert_eq!(whole.update(*pose, &scan), again.update(*pose, &scan));
@@ -245,10 +248,8 @@ fn a_bare_corridor_is_left_to_the_odometry() {
     let room = FlatRoom::corridor();
     let poses: Vec<_> = (0..40).map(|i| Pose2::new(0.25 * f64::from(i) - 8.0, 0.0, 0.0)).collect();
     let odom: Vec<_> = poses.iter().map(|p| Pose2::new(p.x * 1.02, 0.01 * p.x, 0.001 * p.x)).collect();
-    let near = ParticleConfig {
-        map: trundle_mapping::MapperConfig { max_range: 6.0, ..config(5).map },
-        ..config(5)
-    };
+    let mut near = config(5);
+    near.map.max_range = 6.0;
     let (mapper, done) = run(&room, &poses, &odom, near, 1);
     assert!(done[1..].iter().all(|p| p.degenerate == 1), "{done:?}");
     let along = mapper.pose().x - (odom.last().unwrap().x - odom[0].x);

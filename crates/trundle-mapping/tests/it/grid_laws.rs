@@ -8,7 +8,11 @@ use trundle_mapping::{GridMapper, LiveMapper, MapperConfig, ScanMatchConfig, Sca
 
 /// A map without a blind range, whose clamps are far away.
 fn open() -> MapperConfig {
-    MapperConfig { blind_range: 0.0, clamp_low: 50.0, clamp_high: 50.0, ..MapperConfig::default() }
+    let mut config = MapperConfig::default();
+    config.blind_range = 0.0;
+    config.clamp_low = 50.0;
+    config.clamp_high = 50.0;
+    config
 }
 
 fn room_scan(room: &FlatRoom, pose: Pose2) -> Scan {
@@ -138,8 +142,10 @@ fn a_saved_grid_comes_back_wherever_its_corner_is() {
     assert_eq!(again.grid(), first.grid());
     let known = first.grid().cells().iter().filter(|cell| **cell != Cell::Unknown).count();
     assert!(known > 1_000);
-    let coarser = MapperConfig { resolution: 0.1, ..MapperConfig::default() };
+    let mut coarser = MapperConfig::default();
+    coarser.resolution = 0.1;
     assert_eq!(GridMapper::from_grid(coarser, first.grid()).unwrap_err().field, "resolution of the map");
-    let small = MapperConfig { half_extent: 5.0, ..MapperConfig::default() };
+    let mut small = MapperConfig::default();
+    small.half_extent = 5.0;
     assert_eq!(GridMapper::from_grid(small, first.grid()).unwrap_err().field, "extent of the map");
 }

@@ -3,9 +3,7 @@
 use crate::filter::{config, lap, laser, odometry, ring};
 use crate::flat_room::FlatRoom;
 use trundle_core::{Pose2, Vector2};
-use trundle_mapping::{
-    FilterFileError, Localized, Lost, MapLocalizer, MapperConfig, ParticleConfig, ParticleMapper, ScanUpdate,
-};
+use trundle_mapping::{FilterFileError, Localized, Lost, MapLocalizer, ParticleMapper, ScanUpdate};
 
 /// A room of 20 x 20 m with walls and boxes that differ.
 pub fn hall() -> FlatRoom {
@@ -107,7 +105,8 @@ fn bytes_that_are_not_a_map_are_refused_with_the_reason() {
     for end in (0..bytes.len()).step_by(bytes.len() / 60) {
         assert!(ParticleMapper::load(&bytes[..end], config(5)).is_err());
     }
-    let other = ParticleConfig { map: MapperConfig { resolution: 0.1, ..config(5).map }, ..config(5) };
+    let mut other = config(5);
+    other.map.resolution = 0.1;
     assert_eq!(
         ParticleMapper::load(&bytes, other).unwrap_err().to_string(),
         "the map was made with map.resolution 0.05, not 0.1"
@@ -217,7 +216,8 @@ fn another_run_goes_on_with_an_old_map() {
 fn the_store_of_scans_stays_within_its_bounds() {
     let (room, poses) = (ring(), lap());
     let odom = odometry(&poses);
-    let small = ParticleConfig { max_scans: 100, ..config(4) };
+    let mut small = config(4);
+    small.max_scans = 100;
     let mut mapper = ParticleMapper::new(small, 1).unwrap();
     for i in 0..poses.len() {
         mapper.update(odom[i], &laser(&room, poses[i], i));

@@ -5,7 +5,10 @@ use trundle_core::{Cell, OccupancyGrid, Pose2, Scan};
 use trundle_mapping::{GridMapper, LiveMapper, MapperConfig};
 
 fn config() -> MapperConfig {
-    MapperConfig { blind_range: 0.0, max_range: 15.0, ..MapperConfig::default() }
+    let mut config = MapperConfig::default();
+    config.blind_range = 0.0;
+    config.max_range = 15.0;
+    config
 }
 
 /// Scans along a lap, their true poses, and their poses in a drifting estimate.

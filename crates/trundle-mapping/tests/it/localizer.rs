@@ -5,7 +5,7 @@ use crate::flat_room::FlatRoom;
 use crate::lasting::{hall, mapped, round};
 use std::f64::consts::{PI, TAU};
 use trundle_core::{Beam, Pose2, Scan, Stamp, Vector2};
-use trundle_mapping::{Localized, Lost, MapLocalizer, MapperConfig, ParticleConfig, ParticleMapper};
+use trundle_mapping::{Localized, Lost, MapLocalizer, ParticleMapper};
 
 /// A path around the middle of the room of 6 x 4 m.
 fn circle() -> Vec<Pose2> {
@@ -158,9 +158,12 @@ fn an_empty_map_and_a_blind_scan_give_no_pose() {
 #[test]
 fn a_map_of_other_cells_is_refused_by_field() {
     let grid = localizer(1).grid();
-    let coarser = ParticleConfig { map: MapperConfig { resolution: 0.1, ..config(5).map }, ..config(5) };
+    let mut coarser = config(5);
+    coarser.map.resolution = 0.1;
     let error = MapLocalizer::from_grid(&grid, coarser, 1).unwrap_err();
     assert_eq!((error.field.as_str(), error.unit), ("map.resolution", "m"));
     assert!(error.to_string().contains("0.05"), "{error}");
-    assert!(MapLocalizer::from_grid(&grid, ParticleConfig { outliers: 2.0, ..config(5) }, 1).is_err());
+    let mut wrong = config(5);
+    wrong.outliers = 2.0;
+    assert!(MapLocalizer::from_grid(&grid, wrong, 1).is_err());
 }

@@ -16,4 +16,6 @@ mod live;
 mod localizer;
 mod maps;
 mod matching;
+mod matching_worlds;
+mod sensor_model;
 mod settings;

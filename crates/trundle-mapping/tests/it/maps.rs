@@ -27,7 +27,9 @@ fn ascii(grid: &OccupancyGrid) -> String {
 const INTO_CELLS: Pose2 = Pose2 { x: 0.1, y: 0.1, theta: 0.0 };
 
 fn coarse() -> GridMapper {
-    let config = MapperConfig { resolution: 0.2, blind_range: 0.0, ..MapperConfig::default() };
+    let mut config = MapperConfig::default();
+    config.resolution = 0.2;
+    config.blind_range = 0.0;
     GridMapper::new(config).unwrap()
 }
 

@@ -35,7 +35,9 @@ fn first_fixed(count: usize) -> Vec<bool> {
 }
 
 fn solved(start: Vec<Pose3>, constraints: Vec<PoseConstraint>) -> PoseGraphSolution {
-    let config = PoseGraphConfig { steps: 50, converged: 1e-12, ..PoseGraphConfig::default() };
+    let mut config = PoseGraphConfig::default();
+    config.steps = 50;
+    config.converged = 1e-12;
     let fixed = first_fixed(start.len());
     PoseGraph::new(start, &fixed, constraints).unwrap().solve(&config)
 }
@@ -156,15 +158,12 @@ fn graphs_and_settings_that_are_not_valid_are_refused() {
     let bad = vec![constraint(0, 1, nowhere, 1.0)];
     assert_eq!(refused(two.clone(), bad), "constraint 0 of the graph is not finite, expected finite numbers");
     assert!(refused(two, vec![constraint(0, 1, Pose3::identity(), f64::INFINITY)]).contains("not finite"));
-    let text = |config: PoseGraphConfig| config.validated().unwrap_err().to_string();
-    let good = PoseGraphConfig::default();
-    assert_eq!(
-        text(PoseGraphConfig { steps: 0, ..good.clone() }),
-        "pose_graph.steps is 0, expected 1 or more"
-    );
-    assert!(
-        text(PoseGraphConfig { converged: f64::NAN, ..good.clone() })
-            .starts_with("pose_graph.converged is NaN")
-    );
-    assert!(text(PoseGraphConfig { damping: -1.0, ..good }).starts_with("pose_graph.damping is -1"));
+    let text = |set: fn(&mut PoseGraphConfig)| {
+        let mut config = PoseGraphConfig::default();
+        set(&mut config);
+        config.validated().unwrap_err().to_string()
+    };
+    assert_eq!(text(|c| c.steps = 0), "pose_graph.steps is 0, expected 1 or more");
+    assert!(text(|c| c.converged = f64::NAN).starts_with("pose_graph.converged is NaN"));
+    assert!(text(|c| c.damping = -1.0).starts_with("pose_graph.damping is -1"));
 }

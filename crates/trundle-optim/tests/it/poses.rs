@@ -110,10 +110,12 @@ fn inliers_are_counted() {
 
 #[test]
 fn settings_without_a_round_or_a_step_or_an_end_are_refused() {
-    let text = |config: PoseConfig| config.validated().unwrap_err().to_string();
-    let good = PoseConfig::default();
-    assert_eq!(text(PoseConfig { rounds: 0, ..good.clone() }), "pose.rounds is 0, expected 1 or more");
-    assert_eq!(text(PoseConfig { steps: 0, ..good.clone() }), "pose.steps is 0, expected 1 or more");
-    let endless = PoseConfig { converged: 0.0, ..good };
-    assert_eq!(text(endless), "pose.converged is 0, expected a finite number above 0");
+    let text = |set: fn(&mut PoseConfig)| {
+        let mut config = PoseConfig::default();
+        set(&mut config);
+        config.validated().unwrap_err().to_string()
+    };
+    assert_eq!(text(|c| c.rounds = 0), "pose.rounds is 0, expected 1 or more");
+    assert_eq!(text(|c| c.steps = 0), "pose.steps is 0, expected 1 or more");
+    assert_eq!(text(|c| c.converged = 0.0), "pose.converged is 0, expected a finite number above 0");
 }

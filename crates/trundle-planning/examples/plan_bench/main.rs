@@ -25,9 +25,7 @@ use std::fmt::Write as _;
 use std::sync::OnceLock;
 use std::time::Instant;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
-use trundle_planning::{
-    DistanceField, Plan, PlannerConfig, PlanningTimes, PotentialConfig, PotentialKind, UnknownIs,
-};
+use trundle_planning::{DistanceField, Plan, PlanningTimes, PotentialConfig, PotentialKind, UnknownIs};
 
 /// The robot of the comparison with Nav2's planners, m. Source: ours.
 const RADIUS: f64 = 0.26;
@@ -278,9 +276,12 @@ fn large() {
 fn printed(data: &std::path::Path) {
     println!("\n| map | questions | found | printed potential trapped |");
     println!("|---|---|---|---|");
-    let potential = PotentialConfig { kind: PotentialKind::Printed, ..Default::default() };
+    let mut potential = PotentialConfig::default();
+    potential.kind = PotentialKind::Printed;
     let asked = |grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]| {
-        let mut planner = support::planner(PlannerConfig { potential, ..support::at_home() }, RADIUS);
+        let mut config = support::at_home();
+        config.potential = potential;
+        let mut planner = support::planner(config, RADIUS);
         let mut found = (0, 0);
         for (start, goal) in pairs {
             if let Plan::Found(result) = planner.plan(grid, *start, Twist2::ZERO, *goal) {

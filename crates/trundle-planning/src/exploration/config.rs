@@ -6,6 +6,7 @@ use trundle_core::{Invalid, require_in};
 /// Parameters of frontier exploration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ExploreConfig {
     /// Smallest length of a frontier, m, 0.05 to 5. Shorter frontiers are ignored. Default 0.4: the Kobuki does not fit through narrower
     /// gaps.

@@ -86,8 +86,8 @@ impl Explorer {
     }
 
     fn is_open(&self, frontier: &Frontier) -> bool {
-        let looks = self.viewed.iter().filter(|&&middle| frontier.is_that_at(middle)).count();
-        frontier.middle.norm() <= self.config.reach && looks < self.config.looks as usize
+        let view_count = self.viewed.iter().filter(|&&middle| frontier.is_that_at(middle)).count();
+        frontier.middle.norm() <= self.config.reach && view_count < self.config.looks as usize
     }
 
     /// The nearest cell by path length with a view of the frontier's middle. Missing clearance adds a cost: an obstacle observed from one

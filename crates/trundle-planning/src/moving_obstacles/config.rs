@@ -6,6 +6,7 @@ use trundle_core::{Invalid, require_in};
 /// Parameters of the detection and tracking of moving obstacles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ObstacleTrackerConfig {
     /// Radius around the sensor within which moving obstacles are detected, m, 1 to 20. Default 6 (ours): a person at 1.5 m/s needs 4 s
     /// from there.

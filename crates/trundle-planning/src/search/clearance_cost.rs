@@ -9,6 +9,7 @@ use trundle_core::{Invalid, require_in};
 /// not obstacles. A path is at most 1 + `comfort_weight` times longer than the shortest path with clearance `margin`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ClearanceCostConfig {
     /// Clearance around the footprint that paths keep unless no other path exists, m, 0 to 1. Default 0.05 (ours): a cell and the tracking
     /// error of a Kobuki.

@@ -29,6 +29,7 @@ pub enum PotentialKind {
 /// Parameters of the potential.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct PotentialConfig {
     /// Search method for waypoints. Default geodesic: complete, with shorter paths.
     pub kind: PotentialKind,

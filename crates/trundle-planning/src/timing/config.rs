@@ -6,6 +6,7 @@ use trundle_core::{Invalid, require_in};
 /// Speed limits in addition to the drive's own.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct TimingConfig {
     /// Time between samples of the trajectory, s, 0.001 to 1. Default 0.02: the control period.
     pub period: f64,

@@ -2,7 +2,7 @@
 
 use crate::support::{at_home, found_plan, judge, planner};
 use trundle_core::{OccupancyGrid, Pose2, Twist2};
-use trundle_planning::{Plan, PlannerConfig, PotentialConfig, PotentialKind};
+use trundle_planning::{Plan, PlannerConfig, PotentialKind};
 
 const TRAP: &str = "
     ##############################
@@ -54,8 +54,9 @@ fn out_of_the_u_by_the_geodesic_potential() {
 fn the_printed_potential_is_trapped_and_rescued() {
     let grid = OccupancyGrid::from_ascii(0.2, TRAP).unwrap();
     let (start, goal) = (Pose2::new(2.5, 1.7, 0.0), Pose2::new(5.1, 1.5, 0.0));
-    let potential = PotentialConfig { kind: PotentialKind::Printed, ..Default::default() };
-    let mut planner = planner(PlannerConfig { potential, ..at_home() }, 0.1755);
+    let mut config = at_home();
+    config.potential.kind = PotentialKind::Printed;
+    let mut planner = planner(config, 0.1755);
     let rescued = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
     assert!(rescued.fell_back);
     judge(&grid, &rescued, start, goal, 0.1755);
@@ -156,8 +157,8 @@ fn a_known_way_is_preferred_to_the_unknown() {
     let (start, goal) = (Pose2::new(1.2, 0.9, 0.0), Pose2::new(4.4, 0.9, 0.0));
     let through = found_plan(planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal));
     assert!(through.length < 3.4, "{}", through.length);
-    let room = trundle_planning::ClearanceCostConfig { unknown_weight: 3.0, ..Default::default() };
-    let around =
-        found_plan(planner(PlannerConfig { room, ..at_home() }, 0.17).plan(&grid, start, Twist2::ZERO, goal));
+    let mut config = at_home();
+    config.room.unknown_weight = 3.0;
+    let around = found_plan(planner(config, 0.17).plan(&grid, start, Twist2::ZERO, goal));
     assert!(around.waypoints.points().iter().any(|p| p.y > 1.0), "{:?}", around.waypoints);
 }

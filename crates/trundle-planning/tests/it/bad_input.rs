@@ -4,9 +4,7 @@ use crate::support::{at_home, clearance, found_plan, judge, planner};
 use trundle_core::{
     Cell, CellIndex, DifferentialDrive, DriveLimits, Footprint, OccupancyGrid, Pose2, Twist2, Vector2,
 };
-use trundle_planning::{
-    ClearanceCostConfig, MovingObstacle, Plan, Planner, PlannerConfig, Replan, UnknownIs, WaypointGraph,
-};
+use trundle_planning::{MovingObstacle, Plan, Planner, PlannerConfig, Replan, UnknownIs, WaypointGraph};
 
 const MAP: &str = "
     ????????????
@@ -36,7 +34,8 @@ fn walls_and_borders_have_names() {
     );
     assert!(matches!(ask(at_home(), inside, (9.0, 1.0)), Plan::GoalOutside));
     assert!(matches!(ask(at_home(), (9.0, 1.0), inside), Plan::StartOutside));
-    let walled = PlannerConfig { unknown: UnknownIs::Obstacle, ..PlannerConfig::default() };
+    let mut walled = PlannerConfig::default();
+    walled.unknown = UnknownIs::Obstacle;
     assert!(matches!(ask(walled, inside, (9.0, 1.0)), Plan::GoalOutside));
     assert!(matches!(ask(walled, inside, (2.9, 1.0)), Plan::GoalInObstacle { .. }));
     let Plan::Blocked { nearest } = ask(PlannerConfig::default(), inside, (5.0, 1.0)) else {
@@ -129,11 +128,9 @@ fn unknown_space_is_allowed_has_a_high_cost_or_is_forbidden() {
     }
     let (start, goal) = (Pose2::new(1.0, 1.4, 0.0), Pose2::new(5.0, 1.4, 0.0));
     let ask = |unknown_weight: f64, unknown: UnknownIs| {
-        let config = PlannerConfig {
-            unknown,
-            room: ClearanceCostConfig { unknown_weight, ..ClearanceCostConfig::default() },
-            ..at_home()
-        };
+        let mut config = at_home();
+        config.unknown = unknown;
+        config.room.unknown_weight = unknown_weight;
         let plan = found_plan(planner(config, 0.17).plan(&grid, start, Twist2::ZERO, goal));
         // The path avoids costly cells; the curve may cut their corners.
         let deep =
@@ -148,7 +145,8 @@ fn unknown_space_is_allowed_has_a_high_cost_or_is_forbidden() {
     let (unseen, _) = ask(0.0, UnknownIs::Obstacle);
     assert_eq!(unseen, 0, "forbidden");
     (0..5).for_each(|row| grid.set(CellIndex { col: 30, row }, Cell::Unknown));
-    let walled = PlannerConfig { unknown: UnknownIs::Obstacle, ..at_home() };
+    let mut walled = at_home();
+    walled.unknown = UnknownIs::Obstacle;
     let plan = planner(walled, 0.17).plan(&grid, start, Twist2::ZERO, goal);
     assert!(matches!(plan, Plan::Blocked { nearest } if nearest.x < 3.0), "{plan}");
 }

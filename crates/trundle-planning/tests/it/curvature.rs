@@ -3,13 +3,15 @@
 use crate::support::{at_home, found_plan, judge, planner};
 use proptest::prelude::*;
 use trundle_core::{OccupancyGrid, Pose2, Twist2};
-use trundle_planning::{CurveConfig, PlanResult, PlannerConfig};
+use trundle_planning::{PlanResult, PlannerConfig};
 
 const RADIUS: f64 = 0.1755;
 
 fn gentle(max_curvature: f64) -> PlannerConfig {
-    let curve = CurveConfig { max_curvature, detour: 1.5, ..CurveConfig::default() };
-    PlannerConfig { curve, ..at_home() }
+    let mut config = at_home();
+    config.curve.max_curvature = max_curvature;
+    config.curve.detour = 1.5;
+    config
 }
 
 fn sharpest(result: &PlanResult) -> f64 {

@@ -102,7 +102,9 @@ proptest! {
 
     #[test]
     fn away_from_obstacles_the_force_is_the_attraction_alone(goal in any_point(), point in any_point(), attraction in 0.1..10.0_f64) {
-        let (empty, config) = (field(&[]), PotentialConfig { attraction, ..PotentialConfig::default() });
+        let mut config = PotentialConfig::default();
+        config.attraction = attraction;
+        let empty = field(&[]);
         let potential = PotentialField::new(&empty, goal, 0.1, config);
         prop_assert!((potential.force(point) - (goal - point) * attraction).norm() < 1e-9);
     }

@@ -1,7 +1,7 @@
 //! Gaps that the footprint fits by a hair, of odd and even numbers of cells, along the axes and across them.
 
 use crate::support::{LIMITS, at_home, found_plan, judge, planner};
-use trundle_core::{DifferentialDrive, Footprint, OccupancyGrid, Pose2, Twist2, Vector2};
+use trundle_core::{DifferentialDrive, Footprint, Hypotenuse, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_planning::{Plan, Planner};
 
 /// Side of a cell, m.
@@ -49,7 +49,7 @@ fn a_gap_between_two_corners_lets_through_what_fits() {
                 || (row > 30 && row < 30 + up && col == 59)
         });
         let faces = (right as f64 - 1.0, up as f64 - 1.0);
-        let width = faces.0.hypot(faces.1) * SIDE_M;
+        let width = faces.0.hypotenuse(faces.1) * SIDE_M;
         fits_and_does_not(&grid, width, &format!("{right} right, {up} up"));
     }
 }

@@ -3,7 +3,7 @@
 use crate::support::{at_home, clearance, found_plan, judge, planner};
 use proptest::prelude::*;
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
-use trundle_planning::{CurveConfig, Plan, PlannerConfig};
+use trundle_planning::{Plan, PlannerConfig};
 
 const RADIUS: f64 = 0.17;
 
@@ -117,8 +117,9 @@ proptest! {
 
 /// Curves into both headings, however much longer.
 fn into_headings() -> PlannerConfig {
-    let curve = CurveConfig { detour: 10.0, ..CurveConfig::default() };
-    PlannerConfig { curve, ..at_home() }
+    let mut config = at_home();
+    config.curve.detour = 10.0;
+    config
 }
 
 #[test]

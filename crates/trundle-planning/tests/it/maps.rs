@@ -3,7 +3,7 @@
 use crate::nav_data::{data, mrpb_pairs, pairs, read_map};
 use crate::support::{at_home, cpu_ms, judge, planner};
 use trundle_core::{OccupancyGrid, Pose2, Twist2};
-use trundle_planning::{ClearanceCostConfig, Plan, PlannerConfig, PotentialConfig, PotentialKind};
+use trundle_planning::{Plan, PlannerConfig, PotentialConfig, PotentialKind};
 
 #[derive(Default, Debug)]
 struct Tally {
@@ -72,8 +72,10 @@ fn nav2_pairs_are_all_found() {
         let tally = run(&format!("{map} {radius}"), &grid, &pairs, at_home(), radius);
         assert_eq!(tally.found, pairs.len());
         // Compared with the shortest path of a search without clearance costs.
-        let room = ClearanceCostConfig { margin: 0.0, comfort: 0.0, ..ClearanceCostConfig::default() };
-        let tight = run("  without comfort", &grid, &pairs, PlannerConfig { room, ..at_home() }, radius);
+        let mut config = at_home();
+        config.room.margin = 0.0;
+        config.room.comfort = 0.0;
+        let tight = run("  without comfort", &grid, &pairs, config, radius);
         let ratio = |i: usize| tally.lengths[i] / tight.way_lengths[i];
         let worst = (0..pairs.len()).map(ratio).fold(0.0, f64::max);
         let mean = (0..pairs.len()).map(ratio).sum::<f64>() / pairs.len() as f64;
@@ -85,11 +87,13 @@ fn nav2_pairs_are_all_found() {
 #[test]
 fn the_printed_potential_falls_back_where_it_is_trapped() {
     let Some(data) = data() else { return };
-    let potential = PotentialConfig { kind: PotentialKind::Printed, ..Default::default() };
+    let mut potential = PotentialConfig::default();
+    potential.kind = PotentialKind::Printed;
     for map in ["depot", "tb3_sandbox"] {
         let grid = read_map(&data.join(format!("nav2/{map}.yaml")));
         let pairs = pairs(&data.join(format!("nav2/nav2_{map}.csv")), 1);
-        let config = PlannerConfig { potential, ..at_home() };
+        let mut config = at_home();
+        config.potential = potential;
         let tally = run(&format!("{map}, printed"), &grid, &pairs, config, 0.1755);
         assert_eq!(tally.found, pairs.len());
         assert!(tally.fell_back < pairs.len());

@@ -186,7 +186,11 @@ fn a_blocked_goal_is_approached_as_far_as_allowed() {
     let (start, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(7.5, 3.0, 0.5));
     let refused = planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal);
     assert!(matches!(refused, Plan::GoalInObstacle { .. }));
-    let near = |goal_tolerance| PlannerConfig { goal_tolerance, ..at_home() };
+    let near = |goal_tolerance| {
+        let mut config = at_home();
+        config.goal_tolerance = goal_tolerance;
+        config
+    };
     let short = planner(near(0.3), RADIUS).plan(&grid, start, Twist2::ZERO, goal);
     assert!(matches!(short, Plan::Blocked { .. }), "{short}");
     let result = found_plan(planner(near(1.0), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
@@ -228,7 +232,9 @@ fn a_goal_nearby_says_why() {
     (70..100).for_each(|col| {
         (0..60).for_each(|row| mask.set(trundle_core::CellIndex { col, row }, Cell::Occupied))
     });
-    let mut planner = planner(PlannerConfig { goal_tolerance: 2.0, ..at_home() }, RADIUS);
+    let mut config = at_home();
+    config.goal_tolerance = 2.0;
+    let mut planner = planner(config, RADIUS);
     planner.set_keep_out(Some(mask));
     let start = Pose2::new(1.0, 3.0, 0.0);
     let near = found_plan(planner.plan(&grid, start, Twist2::ZERO, Pose2::new(8.0, 3.0, 0.0)));

@@ -2,7 +2,7 @@
 
 use crate::support::{LIMITS, at_home, found_plan, judge, planner};
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, TrajectoryPoint, Twist2, Vector2};
-use trundle_planning::{PlanResult, PlannerConfig, PotentialConfig, PotentialKind, TimingConfig};
+use trundle_planning::{PlanResult, PotentialKind, TimingConfig};
 
 const RADIUS: f64 = 0.1755;
 
@@ -38,8 +38,9 @@ fn swings(result: &PlanResult) -> usize {
 #[test]
 fn nothing_swings_in_a_corridor() {
     for kind in [PotentialKind::Geodesic, PotentialKind::Printed] {
-        let potential = PotentialConfig { kind, ..PotentialConfig::default() };
-        let mut planner = planner(PlannerConfig { potential, ..at_home() }, RADIUS);
+        let mut config = at_home();
+        config.potential.kind = kind;
+        let mut planner = planner(config, RADIUS);
         for (wide, rough) in [(9, false), (12, true), (16, true), (24, false), (24, true)] {
             let grid = corridor(wide, rough);
             let middle = f64::from(wide as u32 + 4) * 0.025;

@@ -58,10 +58,15 @@ fn every_number_of_the_curve_is_checked() {
     ];
     refuses("curve.", &CurveConfig::default(), &settings, CurveConfig::validated);
     for (degree, good) in [(4, false), (5, true), (12, true), (13, false)] {
-        assert_eq!(CurveConfig { degree, ..CurveConfig::default() }.validated().is_ok(), good, "{degree}");
+        let mut config = CurveConfig::default();
+        config.degree = degree;
+        assert_eq!(config.validated().is_ok(), good, "{degree}");
     }
-    let text =
-        |smoothing| CurveConfig { smoothing, ..CurveConfig::default() }.validated().unwrap_err().to_string();
+    let text = |smoothing| {
+        let mut config = CurveConfig::default();
+        config.smoothing = smoothing;
+        config.validated().unwrap_err().to_string()
+    };
     assert_eq!(text(0.0), "curve.smoothing is 0 m, expected a finite number above 0");
     assert_eq!(text(11.0), "curve.smoothing is 11 m, expected 0 to 10");
 }
@@ -92,9 +97,11 @@ fn every_number_of_the_tracker_of_moving_obstacles_is_checked() {
         ("min_distance", "m", 0.01, 10.0, |c, x| c.min_distance = x),
     ];
     refuses("tracker.", &ObstacleTrackerConfig::default(), &settings, ObstacleTrackerConfig::validated);
-    let one = ObstacleTrackerConfig { sightings: 1, ..ObstacleTrackerConfig::default() };
+    let mut one = ObstacleTrackerConfig::default();
+    one.sightings = 1;
     assert_eq!(one.validated().unwrap_err().to_string(), "tracker.sightings is 1, expected 2 to 1000");
-    let none = ObstacleTrackerConfig { min_hits: 0, ..ObstacleTrackerConfig::default() };
+    let mut none = ObstacleTrackerConfig::default();
+    none.min_hits = 0;
     assert_eq!(none.validated().unwrap_err().to_string(), "tracker.min_hits is 0, expected 1 to 10000");
 }
 
@@ -129,25 +136,16 @@ fn the_planner_checks_its_own_numbers_and_those_of_its_parts() {
 
 #[test]
 fn every_number_of_the_potential_is_checked() {
-    let text = |config: PotentialConfig| config.validated().unwrap_err().to_string();
-    let good = PotentialConfig::default();
+    let text = |set: fn(&mut PotentialConfig)| {
+        let mut config = PotentialConfig::default();
+        set(&mut config);
+        config.validated().unwrap_err().to_string()
+    };
     let above = "expected a finite number above 0";
-    assert_eq!(
-        text(PotentialConfig { attraction: 0.0, ..good }),
-        format!("potential.attraction is 0, {above}")
-    );
-    assert_eq!(
-        text(PotentialConfig { repulsion: -1.0, ..good }),
-        format!("potential.repulsion is -1, {above}")
-    );
-    assert_eq!(
-        text(PotentialConfig { reach: f64::NAN, ..good }),
-        "potential.reach is NaN m, expected 0.001 to 100"
-    );
-    assert_eq!(
-        text(PotentialConfig { patience: 0, ..good }),
-        "potential.patience is 0 steps, expected 1 to 100000"
-    );
+    assert_eq!(text(|c| c.attraction = 0.0), format!("potential.attraction is 0, {above}"));
+    assert_eq!(text(|c| c.repulsion = -1.0), format!("potential.repulsion is -1, {above}"));
+    assert_eq!(text(|c| c.reach = f64::NAN), "potential.reach is NaN m, expected 0.001 to 100");
+    assert_eq!(text(|c| c.patience = 0), "potential.patience is 0 steps, expected 1 to 100000");
 }
 
 #[test]

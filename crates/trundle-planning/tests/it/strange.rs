@@ -2,7 +2,8 @@
 
 use crate::support::{LIMITS, at_home, found_plan, judge, planner};
 use trundle_core::{
-    Cell, CellIndex, DifferentialDrive, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2,
+    Cell, CellIndex, DifferentialDrive, Footprint, GridGeometry, Hypotenuse, OccupancyGrid, Pose2, Twist2,
+    Vector2,
 };
 use trundle_planning::{DistanceField, Plan, Planner, PlannerConfig, UnknownIs, WaypointGraph};
 
@@ -150,8 +151,8 @@ fn corridors_an_even_number_of_cells_wide() {
 fn spirals_slanted_walls_and_crumbs() {
     let spiral = |x: f64, y: f64| {
         let (dx, dy) = (x - 0.5, y - 0.5);
-        let turns = dx.hypot(dy) / 0.09 - dy.atan2(dx) / std::f64::consts::TAU;
-        turns.rem_euclid(1.0) < 0.12 && dx.hypot(dy) > 0.05
+        let turns = dx.hypotenuse(dy) / 0.09 - dy.atan2(dx) / std::f64::consts::TAU;
+        turns.rem_euclid(1.0) < 0.12 && dx.hypotenuse(dy) > 0.05
     };
     all_found("spiral", &walled(160, 0.05, Vector2::new(100.0, -40.0), spiral), 0.1755, 4);
     let slanted = |x: f64, y: f64| {
@@ -186,7 +187,9 @@ fn an_unknown_border_is_left_and_entered_as_configured() {
     let (start, inside, beyond) =
         (Pose2::new(-1.0, 0.0, 2.0), Pose2::new(1.0, 1.0, 0.0), Pose2::new(1.8, 0.0, 0.0));
     for (unknown, outside) in [(UnknownIs::Free, true), (UnknownIs::Obstacle, false)] {
-        let mut planner = planner(PlannerConfig { unknown, ..at_home() }, 0.1755);
+        let mut config = at_home();
+        config.unknown = unknown;
+        let mut planner = planner(config, 0.1755);
         judge(&grid, &found_plan(planner.plan(&grid, start, Twist2::ZERO, inside)), start, inside, 0.1755);
         let plan = planner.plan(&grid, start, Twist2::ZERO, beyond);
         assert_eq!(matches!(plan, Plan::Found(_)), outside, "{plan}");
@@ -203,8 +206,9 @@ fn the_tiniest_and_the_thinnest_maps_have_answers() {
             let (a, b) =
                 (geometry.center(geometry.cell(0)), geometry.center(geometry.cell(geometry.len() - 1)));
             for unknown in [UnknownIs::Free, UnknownIs::Obstacle] {
-                for config in [at_home(), PlannerConfig::default()] {
-                    let mut planner = planner(PlannerConfig { unknown, ..config }, 0.1755);
+                for mut config in [at_home(), PlannerConfig::default()] {
+                    config.unknown = unknown;
+                    let mut planner = planner(config, 0.1755);
                     let plan = planner.plan(
                         &grid,
                         Pose2::new(a.x, a.y, 0.0),
@@ -234,7 +238,8 @@ fn gap(wide: usize) -> (OccupancyGrid, Pose2, Pose2) {
 fn a_tight_gap_is_passed_whatever_else_is_allowed() {
     let (mut grid, start, goal) = gap(4);
     let radius = 0.17;
-    let near = PlannerConfig { goal_tolerance: 6.0, ..at_home() };
+    let mut near = at_home();
+    near.goal_tolerance = 6.0;
     let plan = found_plan(planner(near, radius).plan(&grid, start, Twist2::ZERO, goal));
     assert_eq!(plan.instead_of, None);
     judge(&grid, &plan, start, goal, radius);
@@ -247,7 +252,8 @@ fn a_tight_gap_is_passed_whatever_else_is_allowed() {
     judge(&grid, &plan, start, goal, radius);
     assert!(plan.waypoints.points().contains(&at(4.0, 1.0)));
     (48..52).for_each(|col| grid.set(CellIndex { col, row: 20 }, Cell::Occupied));
-    let some = PlannerConfig { goal_tolerance: 0.6, ..at_home() };
+    let mut some = at_home();
+    some.goal_tolerance = 0.6;
     let plan = found_plan(planner(some, radius).plan(&grid, start, Twist2::ZERO, goal));
     assert!(plan.trajectory.end().distance(&goal) < 0.4, "{:?}", plan.trajectory.end());
     assert!(matches!(plan.instead_of, Some(Plan::GoalInObstacle { .. })), "{:?}", plan.instead_of);

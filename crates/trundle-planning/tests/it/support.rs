@@ -14,7 +14,9 @@ pub fn planner(config: PlannerConfig, radius: f64) -> Planner {
 
 /// Never off the grid.
 pub fn at_home() -> PlannerConfig {
-    PlannerConfig { beyond: 0.0, ..PlannerConfig::default() }
+    let mut config = PlannerConfig::default();
+    config.beyond = 0.0;
+    config
 }
 
 pub fn found_plan(plan: Plan) -> Box<PlanResult> {

@@ -11,8 +11,9 @@ fn hall() -> OccupancyGrid {
 }
 
 fn gently(jerk: f64) -> PlannerConfig {
-    let timing = TimingConfig { jerk: Some(jerk), ..TimingConfig::default() };
-    PlannerConfig { timing, ..at_home() }
+    let mut config = at_home();
+    config.timing.jerk = Some(jerk);
+    config
 }
 
 /// The greatest change of acceleration, from samples that are a period apart, m/s^3.

@@ -389,24 +389,13 @@ fn scans_from_the_past_and_wrong_numbers_change_nothing() {
         Scan::new(since, old.origin(), old.angle(0), old.angle_increment(), old.beams().to_vec()).unwrap();
     tracker.add_scan(Pose2 { x: f64::NAN, ..pose }, &old);
     assert_eq!(tracker.moving_obstacles(stamp(2.0)), obstacles);
-    assert!(
-        MovingObstacleTracker::new(ObstacleTrackerConfig {
-            memory: f64::NAN,
-            ..ObstacleTrackerConfig::default()
-        })
-        .is_err()
-    );
-    assert!(
-        MovingObstacleTracker::new(ObstacleTrackerConfig {
-            sightings: 1,
-            ..ObstacleTrackerConfig::default()
-        })
-        .is_err()
-    );
-    assert!(
-        MovingObstacleTracker::new(ObstacleTrackerConfig { reach: 1e9, ..ObstacleTrackerConfig::default() })
-            .is_err()
-    );
+    let wrong: [fn(&mut ObstacleTrackerConfig); 3] =
+        [|c| c.memory = f64::NAN, |c| c.sightings = 1, |c| c.reach = 1e9];
+    for set in wrong {
+        let mut config = ObstacleTrackerConfig::default();
+        set(&mut config);
+        assert!(MovingObstacleTracker::new(config).is_err());
+    }
 }
 
 /// The map of the area, with the cells drawn for people.

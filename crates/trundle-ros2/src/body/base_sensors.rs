@@ -5,7 +5,7 @@ use crate::Ros2Error;
 use crate::clock::RosClock;
 use crate::convert::{battery, imu, odometry, scan, stamp};
 use crate::generated::builtin_interfaces::Time;
-use crate::generated::nav_msgs::Odometry as OdometryMessage;
+use crate::generated::nav_msgs::OdometryMessage;
 use crate::generated::sensor_msgs::{BatteryState, Imu, LaserScan};
 use crate::generated::std_msgs::Header;
 use crate::node::{Diagnostics, RosNode, TopicMonitor, qos};
@@ -216,7 +216,7 @@ fn subscribe_battery(node: &mut RosNode, topic: &str, shared: &Arc<Shared>) -> R
     let on_battery = move |message: BatteryState| {
         let stamp = shared.clock.now();
         if let Some(battery) = shared.accept(&name, battery::from_ros(&message)) {
-            shared.send(SensorEvent::Body(BodyEvent { stamp, kind: BodyEventKind::Battery(battery) }));
+            shared.send(SensorEvent::Body(BodyEvent::new(stamp, BodyEventKind::Battery(battery))));
         }
     };
     node.subscribe(topic, &qos::sensor(1), None, on_battery).map(drop)

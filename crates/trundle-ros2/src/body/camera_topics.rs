@@ -2,9 +2,9 @@
 
 use super::BodySettings;
 use super::base_sensors::Shared;
-use super::image_inbox::{ImageInbox, ImageMessage};
+use super::image_inbox::{ImageInbox, ReceivedImage};
 use crate::Ros2Error;
-use crate::generated::sensor_msgs::{CameraInfo, CompressedImage, Image};
+use crate::generated::sensor_msgs::{CameraInfoMessage, CompressedImage, ImageMessage};
 use crate::generated::std_msgs::Header;
 use crate::interface::MessageType;
 use crate::node::{RosNode, qos};
@@ -28,20 +28,20 @@ pub fn subscribe(
     if settings.is_color_compressed() {
         images::<CompressedImage>(node, &settings.color, shared, inbox, ImageInbox::on_color)?;
     } else {
-        images::<Image>(node, &settings.color, shared, inbox, ImageInbox::on_color)?;
+        images::<ImageMessage>(node, &settings.color, shared, inbox, ImageInbox::on_color)?;
     }
     if settings.is_depth_compressed() {
         images::<CompressedImage>(node, &settings.depth, shared, inbox, ImageInbox::on_depth)?;
     } else {
-        images::<Image>(node, &settings.depth, shared, inbox, ImageInbox::on_depth)?;
+        images::<ImageMessage>(node, &settings.depth, shared, inbox, ImageInbox::on_depth)?;
     }
     let own = Arc::clone(inbox);
-    node.subscribe(&settings.camera_info, &qos::sensor(1), None, move |info: CameraInfo| {
+    node.subscribe(&settings.camera_info, &qos::sensor(1), None, move |info: CameraInfoMessage| {
         own.on_color_info(info)
     })?;
     if let Some(topic) = &settings.depth_info {
         let own = Arc::clone(inbox);
-        node.subscribe(topic, &qos::sensor(1), None, move |info: CameraInfo| own.on_depth_info(info))?;
+        node.subscribe(topic, &qos::sensor(1), None, move |info: CameraInfoMessage| own.on_depth_info(info))?;
     }
     Ok(())
 }
@@ -49,16 +49,16 @@ pub fn subscribe(
 /// A message that is an image.
 trait ImageOfTopic: MessageType {
     fn header(&self) -> &Header;
-    fn into_message(self) -> ImageMessage;
+    fn into_message(self) -> ReceivedImage;
 }
 
-impl ImageOfTopic for Image {
+impl ImageOfTopic for ImageMessage {
     fn header(&self) -> &Header {
         &self.header
     }
 
-    fn into_message(self) -> ImageMessage {
-        ImageMessage::Raw(self)
+    fn into_message(self) -> ReceivedImage {
+        ReceivedImage::Raw(self)
     }
 }
 
@@ -67,8 +67,8 @@ impl ImageOfTopic for CompressedImage {
         &self.header
     }
 
-    fn into_message(self) -> ImageMessage {
-        ImageMessage::Compressed(self)
+    fn into_message(self) -> ReceivedImage {
+        ReceivedImage::Compressed(self)
     }
 }
 
@@ -77,7 +77,7 @@ fn images<M: ImageOfTopic>(
     topic: &str,
     shared: &Arc<Shared>,
     inbox: &Arc<ImageInbox>,
-    put: impl Fn(&ImageInbox, Stamp, ImageMessage) + Send + 'static,
+    put: impl Fn(&ImageInbox, Stamp, ReceivedImage) + Send + 'static,
 ) -> Result<(), Ros2Error> {
     let (shared, inbox, name) = (Arc::clone(shared), Arc::clone(inbox), node.names().resolve(topic));
     let on_image = move |image: M| {

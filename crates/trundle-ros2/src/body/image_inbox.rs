@@ -1,7 +1,7 @@
 //! The newest image pair and the cameras' intrinsics, from the node's thread to the camera's.
 
 use super::image_pairs::{ImagePairs, MAX_PAIR_GAP_S};
-use crate::generated::sensor_msgs::{CameraInfo, CompressedImage, Image};
+use crate::generated::sensor_msgs::{CameraInfoMessage, CompressedImage, ImageMessage};
 use crate::node::Diagnostics;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -9,14 +9,14 @@ use trundle_core::Stamp;
 
 /// An image as received.
 #[derive(Debug, Clone, PartialEq)]
-pub enum ImageMessage {
+pub enum ReceivedImage {
     /// Pixels.
-    Raw(Image),
+    Raw(ImageMessage),
     /// A file.
     Compressed(CompressedImage),
 }
 
-impl ImageMessage {
+impl ReceivedImage {
     /// Name of the image's frame.
     #[must_use]
     pub fn frame(&self) -> &str {
@@ -28,14 +28,14 @@ impl ImageMessage {
 }
 
 /// A colour image and the depth image of the same moment.
-pub type ImagePair = (ImageMessage, ImageMessage);
+pub type ImagePair = (ReceivedImage, ReceivedImage);
 
 #[derive(Default)]
 struct State {
-    pairs: ImagePairs<ImageMessage, ImageMessage>,
+    pairs: ImagePairs<ReceivedImage, ReceivedImage>,
     newest: Option<ImagePair>,
-    color_info: Option<CameraInfo>,
-    depth_info: Option<CameraInfo>,
+    color_info: Option<CameraInfoMessage>,
+    depth_info: Option<CameraInfoMessage>,
     color_frame: Option<String>,
     depth_frame: Option<String>,
 }
@@ -56,7 +56,7 @@ impl ImageInbox {
     }
 
     /// Takes up a colour image of the time `stamp`.
-    pub fn on_color(&self, stamp: Stamp, image: ImageMessage) {
+    pub fn on_color(&self, stamp: Stamp, image: ReceivedImage) {
         let mut state = self.lock();
         state.color_frame.get_or_insert_with(|| image.frame().to_owned());
         let pair = state.pairs.add_color(stamp, image);
@@ -64,7 +64,7 @@ impl ImageInbox {
     }
 
     /// Takes up a depth image of the time `stamp`.
-    pub fn on_depth(&self, stamp: Stamp, image: ImageMessage) {
+    pub fn on_depth(&self, stamp: Stamp, image: ReceivedImage) {
         let mut state = self.lock();
         state.depth_frame.get_or_insert_with(|| image.frame().to_owned());
         let pair = state.pairs.add_depth(stamp, image);
@@ -72,20 +72,20 @@ impl ImageInbox {
     }
 
     /// Takes up the intrinsics of the colour camera.
-    pub fn on_color_info(&self, info: CameraInfo) {
+    pub fn on_color_info(&self, info: CameraInfoMessage) {
         self.lock().color_info = Some(info);
         self.arrival.notify_all();
     }
 
     /// Takes up the intrinsics of the depth camera.
-    pub fn on_depth_info(&self, info: CameraInfo) {
+    pub fn on_depth_info(&self, info: CameraInfoMessage) {
         self.lock().depth_info = Some(info);
         self.arrival.notify_all();
     }
 
     /// The newest intrinsics of colour and depth.
     #[must_use]
-    pub fn infos(&self) -> (Option<CameraInfo>, Option<CameraInfo>) {
+    pub fn infos(&self) -> (Option<CameraInfoMessage>, Option<CameraInfoMessage>) {
         let state = self.lock();
         (state.color_info.clone(), state.depth_info.clone())
     }

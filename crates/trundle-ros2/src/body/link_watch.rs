@@ -1,4 +1,4 @@
-//! Watches the links of a running ROS 2 robot: base, laser, camera, and the node itself.
+//! Watches the links of a running ROS 2 robot: base, laser, camera, the order of events, and the node itself.
 
 use super::base_sensors::{BaseMonitors, Shared};
 use crate::Ros2Error;
@@ -6,11 +6,14 @@ use crate::node::{Level, NodeThread, TopicMonitor};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
+use trundle_app::real_time::EventFeed;
 use trundle_core::{BodyEvent, BodyEventKind, Device, Link, SensorEvent};
 use trundle_drivers::camera::camera_thread::CameraThread;
 
 /// Period of checks of the links. Source: ours.
 const LINK_PERIOD: Duration = Duration::from_millis(50);
+/// Name of the order of events among the diagnostics.
+const ORDER_NAME: &str = "order of events";
 
 /// Reports the loss and the return of base and laser, faults of the camera, and a crash of the node.
 pub(super) struct LinkWatch {
@@ -27,6 +30,7 @@ impl LinkWatch {
         shared: Arc<Shared>,
         monitors: BaseMonitors,
         mut camera: WatchedCamera,
+        mut order: WatchedOrder,
         node: Arc<NodeThread>,
     ) -> Result<Self, Ros2Error> {
         let is_over = Arc::<AtomicBool>::default();
@@ -38,6 +42,7 @@ impl LinkWatch {
             while !over.load(Ordering::Relaxed) {
                 links.iter_mut().for_each(|link| link.check(&shared, &node));
                 camera.check(&shared);
+                order.check(&shared);
                 std::thread::sleep(LINK_PERIOD);
             }
         };
@@ -79,7 +84,7 @@ impl WatchedLink {
         if is_up != self.is_up {
             self.is_up = is_up;
             let kind = BodyEventKind::Link(Link { device: self.device, is_up });
-            shared.send(SensorEvent::Body(BodyEvent { stamp: shared.clock.now(), kind }));
+            shared.send(SensorEvent::Body(BodyEvent::new(shared.clock.now(), kind)));
         }
     }
 }
@@ -110,5 +115,31 @@ impl WatchedCamera {
             shared.diagnostics.report(&self.topic, level, fault.clone());
         }
         (self.faults, self.last_fault) = (faults, fault);
+    }
+}
+
+/// The order of the events of a run, whose late ones are reported.
+pub(super) struct WatchedOrder {
+    feed: EventFeed,
+    late: u64,
+}
+
+impl WatchedOrder {
+    /// Watches the events of `feed`.
+    pub fn new(feed: EventFeed) -> Self {
+        Self { feed, late: 0 }
+    }
+
+    /// Reports events that came too late since the last check.
+    fn check(&mut self, shared: &Shared) {
+        let late = self.feed.order_counts().late;
+        if late > self.late {
+            let message = format!(
+                "{late} events so far came over 0.1 s late and behind newer ones, expected less: they are dropped; \
+                 check the network, and the clocks of the robot's computers"
+            );
+            shared.diagnostics.warn(ORDER_NAME, message);
+        }
+        self.late = late;
     }
 }

@@ -16,7 +16,7 @@ mod wheels;
 pub use base_sensors::{MAX_ODOM_SILENCE, MAX_SCAN_SILENCE};
 pub use continuous_odometry::{ContinuousOdometry, MAX_STEP_M};
 pub use frame_tree::FrameTree;
-pub use image_inbox::{ImageInbox, ImageMessage, ImagePair};
+pub use image_inbox::{ImageInbox, ImagePair, ReceivedImage};
 pub use image_pairs::{ImagePairs, MAX_PAIR_GAP_S};
 pub use ros_camera::{RosCamera, RosCameraSource};
 pub use ros2_body::{BodyDescription, OdometryReader, Ros2Body};

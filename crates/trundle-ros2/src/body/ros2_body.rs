@@ -4,7 +4,7 @@ use super::base_sensors::{BaseMonitors, FRAME_WAIT, Shared, lock, subscribe as s
 use super::camera_topics::subscribe as subscribe_camera;
 use super::commands::{CommandPublisher, CommandThread};
 use super::image_inbox::ImageInbox;
-use super::link_watch::{LinkWatch, WatchedCamera};
+use super::link_watch::{LinkWatch, WatchedCamera, WatchedOrder};
 use super::ros_camera::RosCameraSource;
 use super::{BodySettings, FrameTree};
 use crate::Ros2Error;
@@ -202,8 +202,9 @@ impl Ros2Body {
         let refused = |error: Ros2Error| AppError::Environment(error.to_string());
         let commands = CommandThread::start(self.commands).map_err(refused)?;
         let watched = WatchedCamera::new(Arc::clone(&camera), self.settings.color);
-        let links =
-            LinkWatch::start(Arc::clone(&self.shared), self.monitors, watched, thread).map_err(refused)?;
+        let order = WatchedOrder::new(feed.clone());
+        let links = LinkWatch::start(Arc::clone(&self.shared), self.monitors, watched, order, thread)
+            .map_err(refused)?;
         let sender = commands.commands();
         let shared = self.shared;
         LiveBody::start(feed, Some(sender), move || {
@@ -232,11 +233,9 @@ impl Ros2Body {
             }),
         };
         // A simulator's images may be equal for long.
-        let config = CameraThreadConfig {
-            output: Some(output),
-            expects_noise: false,
-            ..CameraThreadConfig::default()
-        };
+        let mut config = CameraThreadConfig::default();
+        config.output = Some(output);
+        config.expects_noise = false;
         CameraThread::start(parts, config)
             .map_err(|error| AppError::Environment(format!("cannot start the camera's threads: {error}")))
     }

@@ -1,7 +1,7 @@
 //! The camera of a ROS 2 robot as a depth camera of the drivers: they convert, register and watch its frames.
 
 use super::BodySettings;
-use super::image_inbox::{ImageInbox, ImageMessage};
+use super::image_inbox::{ImageInbox, ReceivedImage};
 use crate::convert::camera_info;
 use crate::convert::image::{
     color_from_ros, compressed_color_from_ros, compressed_depth_from_ros, depth_from_ros,
@@ -100,25 +100,26 @@ impl RosCameraSource {
     }
 
     /// A pair of messages as a frame of the drivers.
-    fn frame(&self, (color, depth): (ImageMessage, ImageMessage)) -> Result<CameraFrame, Invalid> {
+    fn frame(&self, (color, depth): (ReceivedImage, ReceivedImage)) -> Result<CameraFrame, Invalid> {
         let (color_info, depth_info) = self.inbox.infos();
         let expected = |what: &str| format!("message on {what}: without it images have no size");
         let Some(color_info) = color_info else {
             let topic = &self.settings.camera_info;
             return Err(self.named(topic, Invalid::new("camera_info", "missing", "", expected(topic))));
         };
-        let size =
-            |info: &crate::generated::sensor_msgs::CameraInfo| (info.width as usize, info.height as usize);
+        let size = |info: &crate::generated::sensor_msgs::CameraInfoMessage| {
+            (info.width as usize, info.height as usize)
+        };
         let color_size = size(&color_info);
         let depth_size = depth_info.as_ref().map_or(color_size, size);
         let color = match color {
-            ImageMessage::Raw(image) => color_from_ros(image),
-            ImageMessage::Compressed(image) => compressed_color_from_ros(image, color_size),
+            ReceivedImage::Raw(image) => color_from_ros(image),
+            ReceivedImage::Compressed(image) => compressed_color_from_ros(image, color_size),
         };
         let color = color.and_then(|image| of_size(image, color_size));
         let depth = match depth {
-            ImageMessage::Raw(image) => depth_from_ros(image),
-            ImageMessage::Compressed(image) => compressed_depth_from_ros(image),
+            ReceivedImage::Raw(image) => depth_from_ros(image),
+            ReceivedImage::Compressed(image) => compressed_depth_from_ros(image),
         };
         let depth = depth.and_then(|image| of_size(image, depth_size));
         Ok(CameraFrame {
@@ -186,8 +187,8 @@ mod tests {
         let stamp = Stamp::from_nanos(at);
         let color = color_to_ros(&ColorImage::filled(width, 2, [9; 3]), stamp, "camera");
         let depth = depth_to_ros(&DepthImage::filled(width, 2, 1.0), stamp, "camera");
-        source.inbox.on_depth(stamp, ImageMessage::Raw(depth));
-        source.inbox.on_color(stamp, ImageMessage::Raw(color));
+        source.inbox.on_depth(stamp, ReceivedImage::Raw(depth));
+        source.inbox.on_color(stamp, ReceivedImage::Raw(color));
     }
 
     #[test]

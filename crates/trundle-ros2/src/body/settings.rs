@@ -4,6 +4,7 @@ use crate::convert::camera_info::Rectification;
 
 /// Topics, frames and forms of a ROS 2 robot's sensors and base.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct BodySettings {
     /// Odometry, `nav_msgs/Odometry`.
     pub odom: String,

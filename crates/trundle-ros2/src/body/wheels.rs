@@ -1,4 +1,4 @@
-//! Odometry of a robot with a gyro as readings of wheels: the gyro then gives the heading.
+//! Conversion of odometry to wheel readings, for a robot with a gyro: the heading is the gyro's.
 
 use trundle_core::{DifferentialDrive, Odometry, Pose2, WheelTicks};
 
@@ -21,7 +21,7 @@ impl WheelsFromOdometry {
         Self { drive, last: None, travel: [0.0; 2] }
     }
 
-    /// The counters after new odometry, which has no jumps.
+    /// The counters after new odometry. The odometry must have no jumps.
     pub fn add(&mut self, odometry: &Odometry) -> WheelTicks {
         let motion = self.last.map_or(Pose2::IDENTITY, |last| last.inverse() * odometry.pose);
         self.last = Some(odometry.pose);

@@ -1,7 +1,7 @@
 //! `sensor_msgs/CameraInfo`.
 
 use super::stamp;
-use crate::generated::sensor_msgs::CameraInfo;
+use crate::generated::sensor_msgs::CameraInfoMessage;
 use trundle_core::{Distortion, Invalid, PinholeCamera, Stamp};
 
 /// Distortion of OpenCV's five parameters \[REP 104\].
@@ -30,9 +30,9 @@ impl Rectification {
 ///
 /// # Errors
 /// When the matrix was never set, a number is not finite, or the lens is of another model.
-pub fn from_ros(info: &CameraInfo, rectification: Rectification) -> Result<PinholeCamera, Invalid> {
+pub fn from_ros(info: &CameraInfoMessage, rectification: Rectification) -> Result<PinholeCamera, Invalid> {
     let size = (info.width as usize, info.height as usize);
-    let CameraInfo { k, p, .. } = info;
+    let CameraInfoMessage { k, p, .. } = info;
     let (fx, fy, cx, cy) = match rectification {
         Rectification::Raw => (k[0], k[4], k[2], k[5]),
         Rectification::Rectified => (p[0], p[5], p[2], p[6]),
@@ -48,7 +48,7 @@ pub fn from_ros(info: &CameraInfo, rectification: Rectification) -> Result<Pinho
     PinholeCamera::new(size, (fx, fy), (cx, cy), distortion)
 }
 
-fn distortion(info: &CameraInfo) -> Result<Distortion, Invalid> {
+fn distortion(info: &CameraInfoMessage) -> Result<Distortion, Invalid> {
     let is_known = [PLUMB_BOB, RATIONAL].contains(&info.distortion_model.as_str());
     let is_flat = info.d.iter().all(|value| *value == 0.0);
     if !is_known && !is_flat {
@@ -70,10 +70,10 @@ fn distortion(info: &CameraInfo) -> Result<Distortion, Invalid> {
 
 /// The camera as a message.
 #[must_use]
-pub fn to_ros(camera: &PinholeCamera, at: Stamp, frame: &str) -> CameraInfo {
+pub fn to_ros(camera: &PinholeCamera, at: Stamp, frame: &str) -> CameraInfoMessage {
     let (fx, fy, cx, cy) = (camera.fx(), camera.fy(), camera.cx(), camera.cy());
     let Distortion { k1, k2, p1, p2, k3 } = camera.distortion();
-    CameraInfo {
+    CameraInfoMessage {
         header: stamp::header(at, frame),
         height: camera.height() as u32,
         width: camera.width() as u32,
@@ -82,7 +82,7 @@ pub fn to_ros(camera: &PinholeCamera, at: Stamp, frame: &str) -> CameraInfo {
         k: [fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0],
         r: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
         p: [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
-        ..CameraInfo::default()
+        ..CameraInfoMessage::default()
     }
 }
 
@@ -100,9 +100,10 @@ mod tests {
 
     #[test]
     fn cameras_that_were_never_calibrated_and_fish_eyes_are_refused() {
-        let refused = |info: &CameraInfo| from_ros(info, Rectification::Raw).unwrap_err().to_string();
+        let refused = |info: &CameraInfoMessage| from_ros(info, Rectification::Raw).unwrap_err().to_string();
         assert!(
-            refused(&CameraInfo { width: 640, height: 480, ..CameraInfo::default() }).starts_with("k is 0")
+            refused(&CameraInfoMessage { width: 640, height: 480, ..CameraInfoMessage::default() })
+                .starts_with("k is 0")
         );
         let mut message = to_ros(&PinholeCamera::kinect_v1(), Stamp::default(), "camera");
         message.d[0] = 0.1;

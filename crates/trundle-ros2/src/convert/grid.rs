@@ -3,7 +3,7 @@
 use super::stamp;
 use crate::generated::geometry_msgs::{Point, Pose, Quaternion};
 use crate::generated::map_msgs::OccupancyGridUpdate;
-use crate::generated::nav_msgs::{MapMetaData, OccupancyGrid as Message};
+use crate::generated::nav_msgs::{MapMetaData, OccupancyGridMessage};
 use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Stamp, Vector2};
 
 /// Value of an unknown cell. Source: `nav_msgs/OccupancyGrid`.
@@ -19,9 +19,9 @@ const MAX_FREE: i8 = 25;
 
 /// The grid as a message.
 #[must_use]
-pub fn to_ros(grid: &OccupancyGrid, at: Stamp, frame: &str) -> Message {
+pub fn to_ros(grid: &OccupancyGrid, at: Stamp, frame: &str) -> OccupancyGridMessage {
     let data = grid.cells().iter().map(|cell| value(*cell)).collect();
-    Message { header: stamp::header(at, frame), info: info(grid.geometry(), at), data }
+    OccupancyGridMessage { header: stamp::header(at, frame), info: info(grid.geometry(), at), data }
 }
 
 /// Geometry of the cells, as a message.
@@ -82,7 +82,7 @@ pub fn update(
 ///
 /// # Errors
 /// When size, resolution or origin is not allowed, or the number of cells does not fit.
-pub fn from_ros(message: &Message) -> Result<OccupancyGrid, Invalid> {
+pub fn from_ros(message: &OccupancyGridMessage) -> Result<OccupancyGrid, Invalid> {
     let info = &message.info;
     let origin = super::pose::pose2(&info.origin)?;
     if origin.theta.abs() > 1e-6 {

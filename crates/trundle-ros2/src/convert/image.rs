@@ -5,7 +5,7 @@ mod compressed_depth;
 pub use compressed_depth::{compressed_depth_from_ros, compressed_depth_to_ros};
 
 use super::stamp;
-use crate::generated::sensor_msgs::{CompressedImage, Image};
+use crate::generated::sensor_msgs::{CompressedImage, ImageMessage};
 use crate::generated::std_msgs::Header;
 use crate::wire::Bytes;
 use trundle_core::{ColorImage, DepthImage, Invalid, Stamp};
@@ -33,7 +33,7 @@ const JPEG_MAGIC: [u8; 3] = [0xFF, 0xD8, 0xFF];
 ///
 /// # Errors
 /// When the encoding is no colour encoding, or the number of bytes does not fit the size.
-pub fn color_from_ros(image: Image) -> Result<RawImage, Invalid> {
+pub fn color_from_ros(image: ImageMessage) -> Result<RawImage, Invalid> {
     raw_from_ros(image, &COLORS, "rgb8, bgr8, rgba8, bgra8, mono8, yuv422 or yuv422_yuy2")
 }
 
@@ -41,11 +41,15 @@ pub fn color_from_ros(image: Image) -> Result<RawImage, Invalid> {
 ///
 /// # Errors
 /// When the encoding is no depth encoding, or the number of bytes does not fit the size.
-pub fn depth_from_ros(image: Image) -> Result<RawImage, Invalid> {
+pub fn depth_from_ros(image: ImageMessage) -> Result<RawImage, Invalid> {
     raw_from_ros(image, &DEPTHS, "16UC1 (mm) or 32FC1 (m)")
 }
 
-fn raw_from_ros(image: Image, known: &[(&str, PixelFormat)], expected: &str) -> Result<RawImage, Invalid> {
+fn raw_from_ros(
+    image: ImageMessage,
+    known: &[(&str, PixelFormat)],
+    expected: &str,
+) -> Result<RawImage, Invalid> {
     let encoding = known.iter().find(|(name, _)| *name == image.encoding);
     let Some((_, format)) = encoding else {
         return Err(Invalid::new("encoding", format!("'{}'", image.encoding), "", expected));
@@ -88,21 +92,21 @@ pub fn compressed_color_from_ros(image: CompressedImage, size: (usize, usize)) -
 
 /// A colour image as a message.
 #[must_use]
-pub fn color_to_ros(image: &ColorImage, at: Stamp, frame: &str) -> Image {
+pub fn color_to_ros(image: &ColorImage, at: Stamp, frame: &str) -> ImageMessage {
     to_ros(image, "rgb8", image.data().as_flattened().to_vec(), stamp::header(at, frame))
 }
 
 /// A depth image as a message in millimetres.
 #[must_use]
-pub fn depth_to_ros(image: &DepthImage, at: Stamp, frame: &str) -> Image {
+pub fn depth_to_ros(image: &DepthImage, at: Stamp, frame: &str) -> ImageMessage {
     let millimetres =
         |depth: &f32| ((depth * 1000.0).round().clamp(0.0, f32::from(u16::MAX)) as u16).to_le_bytes();
     to_ros(image, "16UC1", image.data().iter().flat_map(millimetres).collect(), stamp::header(at, frame))
 }
 
 /// Bytes of the size of `image`, rows without a gap.
-fn to_ros<T>(image: &trundle_core::Image<T>, encoding: &str, bytes: Vec<u8>, header: Header) -> Image {
-    Image {
+fn to_ros<T>(image: &trundle_core::Image<T>, encoding: &str, bytes: Vec<u8>, header: Header) -> ImageMessage {
+    ImageMessage {
         header,
         height: image.height() as u32,
         width: image.width() as u32,
@@ -150,11 +154,11 @@ mod tests {
                 .starts_with("encoding is '16UC1', expected rgb8")
         );
         let refused = |image| depth_from_ros(image).unwrap_err().to_string();
-        assert!(refused(Image { encoding: "bayer_rggb8".into(), ..image() }).contains("bayer_rggb8"));
-        assert!(refused(Image { height: u32::MAX, ..image() }).starts_with("number of bytes is 4"));
-        assert!(refused(Image { step: 1, ..image() }).starts_with("step is 1 bytes"));
-        assert!(refused(Image { width: 0, ..image() }).starts_with("image size is 0 x 1"));
-        assert!(refused(Image { is_bigendian: 1, ..image() }).starts_with("is_bigendian"));
+        assert!(refused(ImageMessage { encoding: "bayer_rggb8".into(), ..image() }).contains("bayer_rggb8"));
+        assert!(refused(ImageMessage { height: u32::MAX, ..image() }).starts_with("number of bytes is 4"));
+        assert!(refused(ImageMessage { step: 1, ..image() }).starts_with("step is 1 bytes"));
+        assert!(refused(ImageMessage { width: 0, ..image() }).starts_with("image size is 0 x 1"));
+        assert!(refused(ImageMessage { is_bigendian: 1, ..image() }).starts_with("is_bigendian"));
         let png = CompressedImage { format: "png".into(), ..CompressedImage::default() };
         assert!(
             compressed_color_from_ros(png, (1, 1)).unwrap_err().to_string().starts_with("format is 'png'")

@@ -1,7 +1,7 @@
 //! `sensor_msgs/Imu`: the turn rate around the vertical.
 
 use super::{pose, stamp};
-use crate::generated::geometry_msgs::Vector3 as Message3;
+use crate::generated::geometry_msgs::Vector3Message;
 use crate::generated::sensor_msgs::Imu;
 use nalgebra::UnitQuaternion;
 use trundle_core::{GyroRate, Invalid, Stamp, Vector3, require_finite};
@@ -38,7 +38,7 @@ pub fn to_ros(omega: f64, theta: Option<f64>, at: Stamp, frame: &str) -> Imu {
     let mut imu = Imu {
         header: stamp::header(at, frame),
         orientation: pose::quaternion(&UnitQuaternion::from_euler_angles(0.0, 0.0, theta.unwrap_or(0.0))),
-        angular_velocity: Message3 { x: 0.0, y: 0.0, z: omega },
+        angular_velocity: Vector3Message { x: 0.0, y: 0.0, z: omega },
         ..Imu::default()
     };
     imu.linear_acceleration_covariance[0] = NOT_MEASURED;

@@ -1,14 +1,14 @@
 //! `nav_msgs/Odometry`.
 
 use super::{pose, stamp};
-use crate::generated::nav_msgs::Odometry as Message;
+use crate::generated::nav_msgs::OdometryMessage;
 use trundle_core::{Invalid, Odometry, Stamp, Twist2, require_finite};
 
 /// The odometry of a message, at `stamp` of the run.
 ///
 /// # Errors
 /// When pose, twist or covariance is not finite, or the rotation was never set.
-pub fn from_ros(message: &Message, stamp: Stamp) -> Result<Odometry, Invalid> {
+pub fn from_ros(message: &OdometryMessage, stamp: Stamp) -> Result<Odometry, Invalid> {
     let pose = pose::pose2(&message.pose.pose)?;
     let twist = &message.twist.twist;
     let v = require_finite("twist.linear.x", twist.linear.x, "m/s")?;
@@ -28,12 +28,12 @@ pub struct OdometryFrames<'f> {
 
 /// The odometry as a message, stamped `at` on the ROS clock.
 #[must_use]
-pub fn to_ros(odometry: &Odometry, at: Stamp, frames: OdometryFrames<'_>) -> Message {
-    let mut message = Message {
+pub fn to_ros(odometry: &Odometry, at: Stamp, frames: OdometryFrames<'_>) -> OdometryMessage {
+    let mut message = OdometryMessage {
         header: stamp::header(at, frames.odom),
         child_frame_id: frames.base.to_owned(),
         pose: pose::with_covariance(&odometry.pose, &odometry.covariance),
-        ..Message::default()
+        ..OdometryMessage::default()
     };
     message.twist.twist = super::twist::to_ros(odometry.twist);
     message

@@ -1,14 +1,14 @@
 //! `nav_msgs/Path`.
 
 use super::{pose, stamp};
-use crate::generated::nav_msgs::Path;
+use crate::generated::nav_msgs::PathMessage;
 use trundle_core::{Invalid, Pose2, Stamp};
 
 /// Poses along a path as a message.
 #[must_use]
-pub fn to_ros(poses: &[Pose2], at: Stamp, frame: &str) -> Path {
+pub fn to_ros(poses: &[Pose2], at: Stamp, frame: &str) -> PathMessage {
     let poses = poses.iter().map(|own| pose::stamped(own, at, frame)).collect();
-    Path { header: stamp::header(at, frame), poses }
+    PathMessage { header: stamp::header(at, frame), poses }
 }
 
 /// The poses that preserve the path's shape best \[Douglas73\]: its ends, then repeatedly the pose farthest from the line between its
@@ -40,7 +40,7 @@ fn farthest(poses: &[Pose2], from: usize, to: usize) -> Option<(f64, usize)> {
 ///
 /// # Errors
 /// Names the first pose that is not finite or whose rotation was never set.
-pub fn from_ros(path: &Path) -> Result<Vec<Pose2>, Invalid> {
+pub fn from_ros(path: &PathMessage) -> Result<Vec<Pose2>, Invalid> {
     let pose = |(i, stamped): (usize, &crate::generated::geometry_msgs::PoseStamped)| {
         pose::pose2(&stamped.pose)
             .map_err(|error| Invalid { field: format!("poses[{i}].{}", error.field), ..error })

@@ -36,7 +36,7 @@ pub fn from_ros(message: &LaserScan, stamp: Stamp, base_from_laser: &Pose2) -> R
     }
     let origin = base_from_laser.position();
     let scan = Scan::new(stamp, origin, first + base_from_laser.theta, increment.abs(), beams)?;
-    // Times that cannot be are ignored.
+    // Invalid times are ignored.
     Ok(if times.step_s == 0.0 { scan } else { scan.clone().with_beam_times(times).unwrap_or(scan) })
 }
 

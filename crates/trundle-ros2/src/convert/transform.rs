@@ -1,7 +1,7 @@
 //! `geometry_msgs/TransformStamped`.
 
 use super::{pose, stamp};
-use crate::generated::geometry_msgs::{Point, Pose, Transform, TransformStamped, Vector3};
+use crate::generated::geometry_msgs::{Point, Pose, Transform, TransformStamped, Vector3Message};
 use trundle_core::{Invalid, Pose2, Pose3, Stamp};
 
 /// The pose of the child in its parent's frame.
@@ -9,7 +9,7 @@ use trundle_core::{Invalid, Pose2, Pose3, Stamp};
 /// # Errors
 /// When a number is not finite, or the rotation was never set.
 pub fn from_ros(transform: &Transform) -> Result<Pose3, Invalid> {
-    let Vector3 { x, y, z } = transform.translation;
+    let Vector3Message { x, y, z } = transform.translation;
     pose::pose3(&Pose { position: Point { x, y, z }, orientation: transform.rotation.clone() })
 }
 
@@ -20,7 +20,7 @@ pub fn to_ros(parent_from_child: &Pose3, at: Stamp, parent: &str, child: &str) -
     TransformStamped {
         header: stamp::header(at, parent),
         child_frame_id: child.to_owned(),
-        transform: Transform { translation: Vector3 { x, y, z }, rotation: orientation },
+        transform: Transform { translation: Vector3Message { x, y, z }, rotation: orientation },
     }
 }
 

@@ -1,6 +1,6 @@
 //! Twists.
 
-use crate::generated::geometry_msgs::{Twist, TwistStamped, Vector3};
+use crate::generated::geometry_msgs::{Twist, TwistStamped, Vector3Message};
 use trundle_core::{Invalid, Stamp, Twist2, require_finite};
 
 /// Largest speed of a command \[m/s\], and largest turn rate \[rad/s\]: beyond them a message is broken. Source: ours.
@@ -29,7 +29,7 @@ pub fn from_ros(twist: &Twist) -> Result<Twist2, Invalid> {
 /// The twist as a message.
 #[must_use]
 pub fn to_ros(twist: Twist2) -> Twist {
-    let axis = |x, z| Vector3 { x, y: 0.0, z };
+    let axis = |x, z| Vector3Message { x, y: 0.0, z };
     Twist { linear: axis(twist.v, 0.0), angular: axis(0.0, twist.omega) }
 }
 

@@ -8,6 +8,7 @@ use trundle_core::{Invalid, Pose2};
 
 /// Reason why a goal pose is refused.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum GoalPoseError {
     /// A number is invalid: the goal is refused.
     Invalid(Invalid),

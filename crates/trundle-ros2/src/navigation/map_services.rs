@@ -3,7 +3,7 @@
 use super::active_goal::ActiveGoal;
 use crate::Ros2Error;
 use crate::convert::grid;
-use crate::generated::nav_msgs::{GetMap, GetMapResponse, OccupancyGrid as RosGrid};
+use crate::generated::nav_msgs::{GetMap, GetMapResponse, OccupancyGridMessage};
 use crate::generated::nav2_msgs::{
     ClearCostmapAroundRobot, ClearCostmapAroundRobotResponse, ClearCostmapExceptRegion,
     ClearCostmapExceptRegionResponse, ClearEntireCostmap, ClearEntireCostmapResponse, LoadMap,
@@ -135,11 +135,11 @@ fn read_for(map_url: &str, config: &RobotConfig) -> Result<OccupancyGrid, LoadRe
 }
 
 /// The map if it fits into a reply; else an empty one, whose frame is the name of the topic.
-fn fitting(map: RosGrid) -> RosGrid {
+fn fitting(map: OccupancyGridMessage) -> OccupancyGridMessage {
     if arrives(&map) {
         return map;
     }
-    let mut empty = RosGrid::default();
+    let mut empty = OccupancyGridMessage::default();
     empty.header.frame_id = format!(
         "the map has {} cells, more than a reply has room for: read the topic map, which late subscribers receive too",
         map.data.len()

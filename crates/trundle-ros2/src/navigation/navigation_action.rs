@@ -21,6 +21,7 @@ pub struct GoalContext<'c> {
 
 /// Reason why a goal is not carried out.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum NavigationRefusal<R> {
     /// The goal is refused.
     Refused(String),

@@ -153,9 +153,10 @@ fn refusal(plan: &Plan) -> Outcome {
 }
 
 /// As many poses of a path as fit into its reply.
-fn small_path(poses: &[Pose2], at: Stamp, frame: &str) -> crate::generated::nav_msgs::Path {
+fn small_path(poses: &[Pose2], at: Stamp, frame: &str) -> crate::generated::nav_msgs::PathMessage {
     let of_count = |count| path::to_ros(&path::thinned(poses, count), at, frame);
-    let fits = |path: &crate::generated::nav_msgs::Path| arrives(&(path, [0_u8; REPLY_OVERHEAD_BYTES]));
+    let fits =
+        |path: &crate::generated::nav_msgs::PathMessage| arrives(&(path, [0_u8; REPLY_OVERHEAD_BYTES]));
     (2..=MAX_POSES).rev().map(of_count).find(fits).unwrap_or_default()
 }
 

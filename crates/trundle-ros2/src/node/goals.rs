@@ -22,6 +22,7 @@ const MAX_WAITING: usize = 16;
 
 /// End of a goal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum GoalEnd {
     /// Reached.
     Succeeded,

@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 /// Settings of a node.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct NodeSettings {
     /// Namespace, node name, remapping rules.
     pub names: Names,
@@ -25,6 +26,13 @@ pub struct NodeSettings {
     pub domain: u16,
     /// Networks.
     pub networks: Networks,
+}
+
+impl NodeSettings {
+    /// A node of these names in a domain on these networks.
+    pub const fn new(names: Names, domain: u16, networks: Networks) -> Self {
+        Self { names, domain, networks }
+    }
 }
 
 /// Largest domain id whose ports exist. Source: DDSI-RTPS, 9.6.1.

@@ -13,6 +13,7 @@ pub use robot_outputs::{OutputSources, RobotOutputs};
 
 /// Topics that a robot publishes.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct OutputSettings {
     /// Names of frames.
     pub frames: FrameNames,

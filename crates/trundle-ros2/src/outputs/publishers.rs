@@ -5,7 +5,7 @@ use crate::Ros2Error;
 use crate::generated::diagnostic_msgs::DiagnosticArray;
 use crate::generated::geometry_msgs::PoseWithCovarianceStamped;
 use crate::generated::map_msgs::OccupancyGridUpdate;
-use crate::generated::nav_msgs::{OccupancyGrid, Odometry, Path};
+use crate::generated::nav_msgs::{OccupancyGridMessage, OdometryMessage, PathMessage};
 use crate::generated::sensor_msgs::{BatteryState, LaserScan};
 use crate::generated::tf2_msgs::TFMessage;
 use crate::interface::MessageType;
@@ -53,21 +53,21 @@ pub struct RobotTopics {
     /// Base to camera and scan.
     pub tf_static: OutputTopic<TFMessage>,
     /// Odometry. `None` if the body publishes its own.
-    pub odom: Option<OutputTopic<Odometry>>,
+    pub odom: Option<OutputTopic<OdometryMessage>>,
     /// The map.
-    pub map: OutputTopic<OccupancyGrid>,
+    pub map: OutputTopic<OccupancyGridMessage>,
     /// Changes of the map since the newest update.
     pub map_updates: OutputTopic<OccupancyGridUpdate>,
     /// The scan from depth images. `None` if a laser's scan uses this name.
     pub scan: Option<OutputTopic<LaserScan>>,
     /// The plan.
-    pub plan: OutputTopic<Path>,
+    pub plan: OutputTopic<PathMessage>,
     /// The pose with its covariance.
     pub amcl_pose: OutputTopic<PoseWithCovarianceStamped>,
     /// Costs of the whole map.
-    pub global_costmap: OutputTopic<OccupancyGrid>,
+    pub global_costmap: OutputTopic<OccupancyGridMessage>,
     /// Costs around the robot.
-    pub local_costmap: OutputTopic<OccupancyGrid>,
+    pub local_costmap: OutputTopic<OccupancyGridMessage>,
     /// State of the robot and of its topics.
     pub diagnostics: OutputTopic<DiagnosticArray>,
     /// The battery. `None` if the body publishes its own.

@@ -9,7 +9,7 @@ use crate::clock::RosClock;
 use crate::convert::odometry::OdometryFrames;
 use crate::convert::{battery, diagnostics, grid, odometry, path, pose, scan, stamp, transform};
 use crate::generated::geometry_msgs::{PoseWithCovarianceStamped, TransformStamped};
-use crate::generated::nav_msgs::OccupancyGrid as GridMessage;
+use crate::generated::nav_msgs::OccupancyGridMessage;
 use crate::generated::tf2_msgs::TFMessage;
 use crate::node::{Condition, Diagnostics, Level, NodeThread};
 use std::sync::Arc;
@@ -238,7 +238,7 @@ impl OutputLoop {
             return;
         }
         self.plan = identity;
-        let points = view.plan.iter().flat_map(|plan| plan.points());
+        let points = view.plan.iter().flat_map(|plan| plan.trajectory.points());
         let poses: Vec<Pose2> = points.map(|point| point.pose).collect();
         let at = self.sources.clock.to_ros(view.stamp);
         self.topics.plan.publish(path::to_ros(&poses, at, &self.settings.frames.map));
@@ -273,7 +273,8 @@ impl OutputLoop {
             self.topics.map.publish(grid::to_ros(&map.grid, at, frame));
             self.costs = costmap::costs(&map.grid, self.settings.body_radius_m);
             let info = grid::info(map.grid.geometry(), at);
-            let whole = GridMessage { header: stamp::header(at, frame), info, data: self.costs.clone() };
+            let whole =
+                OccupancyGridMessage { header: stamp::header(at, frame), info, data: self.costs.clone() };
             self.topics.global_costmap.publish(whole);
         }
         if has_changed {
@@ -283,7 +284,11 @@ impl OutputLoop {
             && let Some((place, data)) = costmap::local(map.grid.geometry(), &self.costs, &view.estimate.pose)
         {
             let info = grid::info(&place, at);
-            self.topics.local_costmap.publish(GridMessage { header: stamp::header(at, frame), info, data });
+            self.topics.local_costmap.publish(OccupancyGridMessage {
+                header: stamp::header(at, frame),
+                info,
+                data,
+            });
         }
     }
 

@@ -6,7 +6,7 @@ use super::sensor_topics::SensorTopics;
 use crate::convert::odometry::OdometryFrames;
 use crate::convert::{battery, odometry, scan, transform, twist};
 use crate::generated::geometry_msgs::{Twist, TwistStamped};
-use crate::generated::nav_msgs::Odometry as OdometryMessage;
+use crate::generated::nav_msgs::OdometryMessage;
 use crate::generated::sensor_msgs::{BatteryState, LaserScan};
 use crate::generated::tf2_msgs::TFMessage;
 use crate::node::{RosNode, qos};

@@ -4,7 +4,7 @@ use super::ServerSettings;
 use crate::Ros2Error;
 use crate::convert::camera_info;
 use crate::convert::image::{color_to_ros, compressed_depth_to_ros, depth_to_ros, jpeg_to_ros};
-use crate::generated::sensor_msgs::{CameraInfo, CompressedImage, Image};
+use crate::generated::sensor_msgs::{CameraInfoMessage, CompressedImage, ImageMessage};
 use crate::node::{Readers, RosNode, qos};
 use crate::outputs::OutputTopic;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
@@ -15,15 +15,15 @@ use trundle_io::{JPEG_QUALITY, encode_color, encode_depth};
 /// The topics of a camera.
 struct CameraTopics {
     form: Form,
-    color_info: OutputTopic<CameraInfo>,
-    depth_info: OutputTopic<CameraInfo>,
+    color_info: OutputTopic<CameraInfoMessage>,
+    depth_info: OutputTopic<CameraInfoMessage>,
     camera: PinholeCamera,
     frame: String,
 }
 
 enum Form {
     Compressed(OutputTopic<CompressedImage>, OutputTopic<CompressedImage>),
-    Raw(OutputTopic<Image>, OutputTopic<Image>),
+    Raw(OutputTopic<ImageMessage>, OutputTopic<ImageMessage>),
 }
 
 /// Publishes images on a separate thread: while an image waits, newer ones are dropped.

@@ -13,6 +13,7 @@ use crate::outputs::FrameNames;
 
 /// Settings of an offered body.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ServerSettings {
     /// Names of frames.
     pub frames: FrameNames,
@@ -20,4 +21,11 @@ pub struct ServerSettings {
     pub stamped_commands: bool,
     /// Whether images are published raw, else as JPEG and PNG files.
     pub raw_images: bool,
+}
+
+impl ServerSettings {
+    /// Settings with images as JPEG and PNG files.
+    pub const fn new(frames: FrameNames, stamped_commands: bool) -> Self {
+        Self { frames, stamped_commands, raw_images: false }
+    }
 }

@@ -23,12 +23,7 @@ impl Domain {
 
     /// A node of this name in the domain.
     pub fn node(&self, name: &str) -> RosNode {
-        RosNode::new(&NodeSettings {
-            names: Names::of_node(name),
-            domain: self.0,
-            networks: Networks::Loopback,
-        })
-        .unwrap()
+        RosNode::new(&NodeSettings::new(Names::of_node(name), self.0, Networks::Loopback)).unwrap()
     }
 }
 

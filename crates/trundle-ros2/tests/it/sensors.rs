@@ -7,7 +7,7 @@ use trundle_core::{
     Stamp, WheelTicks,
 };
 use trundle_ros2::convert::image::compressed_depth_from_ros;
-use trundle_ros2::generated::sensor_msgs::{CameraInfo, CompressedImage, Imu, JointState};
+use trundle_ros2::generated::sensor_msgs::{CameraInfoMessage, CompressedImage, Imu, JointState};
 use trundle_ros2::node::qos;
 use trundle_ros2::outputs::FrameNames;
 use trundle_ros2::server::{SensorTopics, ServerSettings};
@@ -32,14 +32,13 @@ impl<M: Clone + Send + 'static> Newest<M> {
 fn the_sensors_of_a_body_are_published_and_images_from_the_first_reader_on() {
     let domain = Domain::new();
     let (mut sender, mut receiver) = (domain.node("sender"), domain.node("receiver"));
-    let settings =
-        ServerSettings { frames: FrameNames::default(), stamped_commands: true, raw_images: false };
+    let settings = ServerSettings::new(FrameNames::default(), true);
     let camera = PinholeCamera::new((4, 2), (3.0, 3.0), (1.5, 0.5), Distortion::default()).unwrap();
     let drive = DifferentialDrive::KOBUKI;
     let mut topics = SensorTopics::new(&mut sender, &settings, camera, drive).unwrap();
     let (imu, on_imu) = Newest::<Imu>::new();
     let (joints, on_joints) = Newest::<JointState>::new();
-    let (info, on_info) = Newest::<CameraInfo>::new();
+    let (info, on_info) = Newest::<CameraInfoMessage>::new();
     let (depth, on_depth) = Newest::<CompressedImage>::new();
     receiver.subscribe("imu", &qos::sensor(5), None, on_imu).unwrap();
     receiver.subscribe("joint_states", &qos::reliable(5), None, on_joints).unwrap();

@@ -6,8 +6,8 @@ use std::time::Duration;
 use trundle_core::{OccupancyGrid, Stamp, Twist2};
 use trundle_ros2::convert::{grid, twist};
 use trundle_ros2::generated::geometry_msgs::TwistStamped;
-use trundle_ros2::generated::nav_msgs::OccupancyGrid as GridMessage;
-use trundle_ros2::generated::sensor_msgs::Image;
+use trundle_ros2::generated::nav_msgs::OccupancyGridMessage;
+use trundle_ros2::generated::sensor_msgs::ImageMessage;
 use trundle_ros2::generated::std_msgs::Bool;
 use trundle_ros2::node::qos;
 use trundle_ros2::wire::Bytes;
@@ -23,16 +23,22 @@ fn commands_and_images_arrive_as_they_were_sent() {
     let domain = Domain::new();
     let (mut sender, mut receiver) = (domain.node("sender"), domain.node("receiver"));
     let commands = sender.publisher::<TwistStamped>("cmd_vel", &qos::reliable(10)).unwrap();
-    let images = sender.publisher::<Image>("image", &qos::sensor(2)).unwrap();
+    let images = sender.publisher::<ImageMessage>("image", &qos::sensor(2)).unwrap();
     let (got_commands, on_command) = kept::<TwistStamped>();
-    let (got_images, on_image) = kept::<Image>();
+    let (got_images, on_image) = kept::<ImageMessage>();
     receiver.subscribe("cmd_vel", &qos::reliable(10), None, on_command).unwrap();
     receiver.subscribe("/image", &qos::sensor(2), None, on_image).unwrap();
     let (_sending, _receiving) = (sender.start().unwrap(), receiver.start().unwrap());
     let command = twist::stamped(Twist2::new(0.25, -0.5), Stamp::from_nanos(1_234_567_890), "base_link");
     let data = Bytes((0..640 * 480 * 3).map(|i: u32| (i % 251) as u8).collect());
-    let image =
-        Image { height: 480, width: 640, step: 1920, encoding: "rgb8".into(), data, ..Image::default() };
+    let image = ImageMessage {
+        height: 480,
+        width: 640,
+        step: 1920,
+        encoding: "rgb8".into(),
+        data,
+        ..ImageMessage::default()
+    };
     wait_until("a command and an image", || {
         commands.publish(command.clone()).unwrap();
         images.publish(image.clone()).unwrap();
@@ -46,13 +52,13 @@ fn commands_and_images_arrive_as_they_were_sent() {
 fn a_late_subscriber_receives_the_map_cell_for_cell() {
     let domain = Domain::new();
     let mut sender = domain.node("sender");
-    let map = sender.publisher::<GridMessage>("map", &qos::latched()).unwrap();
+    let map = sender.publisher::<OccupancyGridMessage>("map", &qos::latched()).unwrap();
     let _sending = sender.start().unwrap();
     let own = OccupancyGrid::from_ascii(0.05, "#..\n#??\n###").unwrap();
     map.publish(grid::to_ros(&own, Stamp::default(), "map")).unwrap();
     std::thread::sleep(Duration::from_millis(300));
     let mut receiver = domain.node("receiver");
-    let (maps, on_map) = kept::<GridMessage>();
+    let (maps, on_map) = kept::<OccupancyGridMessage>();
     receiver.subscribe("map", &qos::latched(), None, on_map).unwrap();
     let _receiving = receiver.start().unwrap();
     wait_until("the map", || !maps.lock().unwrap().is_empty());

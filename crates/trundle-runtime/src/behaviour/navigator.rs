@@ -193,14 +193,15 @@ impl Navigator {
         let remaining = Remaining { rest, results: self.tools.planner.visibility.results(), is_driving };
         let time = self.tools.guard.time_without_progress(s.now, &remaining);
         let is_over = self.tools.options.patience.is_some_and(|patience| time > patience);
-        if is_over && !self.looks_again(s) {
+        if is_over && !self.observes_once_more(s) {
             let state = self.state();
             // Near a closed door the camera is blind for a moment: that is not the cause.
             let is_blind = self.reason_kind() == Some(ReasonKind::ImageMissing);
-            let looked = self.tools.guard.last_look();
-            let looked = looked.filter(|_| is_blind || self.searches_over_unseen_floor());
-            let blocked =
-                looked.map(|look| self.tools.planner.no_path(NoPath::Blocked { nearest: look.nearest }));
+            let observation = self.tools.guard.final_observation();
+            let observation = observation.filter(|_| is_blind || self.searches_over_unseen_floor());
+            let blocked = observation.map(|observation| {
+                self.tools.planner.no_path(NoPath::Blocked { nearest: observation.nearest })
+            });
             let cause = blocked.or_else(|| state.reason().cloned());
             let (state, cause) = (state.name(), cause.map(Box::new));
             self.tools.halt();
@@ -208,10 +209,10 @@ impl Navigator {
         }
     }
 
-    /// Whether the robot looks once more at the reachable point nearest to the goal. A search over unseen floor may have led away from it.
-    fn looks_again(&mut self, s: &WorldState<'_>) -> bool {
-        if let Some(look) = self.tools.guard.last_look() {
-            return look.goes_on(s.now);
+    /// Whether the robot observes once more the reachable point nearest to the goal. A search over unseen floor may have led away from it.
+    fn observes_once_more(&mut self, s: &WorldState<'_>) -> bool {
+        if let Some(observation) = self.tools.guard.final_observation() {
+            return observation.continues(s.now);
         }
         if !self.searches_over_unseen_floor() {
             return false;
@@ -223,7 +224,7 @@ impl Navigator {
             return false;
         }
         let Some(nearest) = self.tools.planner.nearest_seen_point(s, goal) else { return false };
-        self.tools.guard.begin_last_look(s.now, nearest);
+        self.tools.guard.begin_final_observation(s.now, nearest);
         search.viewpoint = Viewpoint::default();
         self.tools.follower.halt();
         true
@@ -231,7 +232,7 @@ impl Navigator {
 
     /// Whether obstacles and unseen floor are all that keeps the robot from its goal: not a sensor, and not the base.
     fn searches_over_unseen_floor(&self) -> bool {
-        self.reason_kind().is_some_and(|kind| kind == ReasonKind::UnseenFloor || kind.is_blockage())
+        self.reason_kind().is_some_and(|kind| kind.is_unseen_path() || kind.is_blockage())
     }
 
     /// Whether the robot waits for a blocked path, as the goal asks.

@@ -6,7 +6,7 @@ use trundle_core::{Pose2, Twist2, Vector2};
 /// Turns on the spot of a robot without a usable scan, and whether they restore the view.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SightRecovery {
-    look: Spin,
+    spin: Spin,
     /// The wanted turn rate at the loss of sight, rad/s.
     wanted: f64,
     /// Place at which a turn last restored sight, map frame, and the number of times at this place.
@@ -29,18 +29,18 @@ impl SightRecovery {
 
     /// The command after a pause without a usable scan: one turn in the direction of the last wanted turn, then rest.
     pub(crate) fn turn(&mut self, pose: Pose2) -> Twist2 {
-        if self.look.has_turned(SPIN_TURNS) {
+        if self.spin.has_turned(SPIN_TURNS) {
             Twist2::ZERO
         } else {
-            self.look.twist_towards(self.wanted, pose)
+            self.spin.twist_towards(self.wanted, pose)
         }
     }
 
     /// Records a usable scan at a place (map frame, m). Returns whether a turn restored the view there for the second time. After a full
     /// turn without result the camera was broken, and the turn did not restore the view.
     pub(crate) fn sees(&mut self, at: Vector2) -> bool {
-        let look = std::mem::take(&mut self.look);
-        if !look.has_turned(MIN_RECOVERY_TURN) || look.has_turned(SPIN_TURNS) {
+        let spin = std::mem::take(&mut self.spin);
+        if !spin.has_turned(MIN_RECOVERY_TURN) || spin.has_turned(SPIN_TURNS) {
             return false;
         }
         let before = self.found.filter(|(place, _)| (at - place).norm() <= ONE_PLACE_M);

@@ -117,7 +117,7 @@ impl Tools {
         }
     }
 
-    /// Changes the patience of goals \[s\]. A goal with a patience of its own keeps it.
+    /// Changes the patience of goals \[s\]. A goal with its own patience keeps it.
     pub(crate) fn set_patience(&mut self, patience: f64) {
         if self.options.patience == self.default_options.patience {
             self.options.patience = Some(patience);

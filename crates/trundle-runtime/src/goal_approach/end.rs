@@ -51,7 +51,7 @@ impl fmt::Display for ApproachFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoGoal => f.write_str("no goal to settle on"),
-            Self::Timeout { limit } => write!(f, "not settled within {limit:.0} s"),
+            Self::Timeout { limit } => write!(f, "not settled within {limit} s"),
             Self::Positioner(reason) => write_positioner_reason(reason, f),
         }
     }
@@ -69,9 +69,7 @@ fn write_positioner_reason(reason: &PositionerReason, f: &mut fmt::Formatter<'_>
         PositionerReason::Planning => {
             f.write_str("the search for turns and straight moves did not come to an end")
         }
-        PositionerReason::Measuring | PositionerReason::Moving(_) | PositionerReason::Settled => {
-            f.write_str("stopped too often")
-        }
+        _ => f.write_str("stopped too often"),
     }
 }
 

@@ -67,9 +67,7 @@ impl Notes {
             PositionerReason::NoWay(_) | PositionerReason::Refused(_) | PositionerReason::BadPose => {
                 PositionerActivity::Waiting
             }
-            PositionerReason::Measuring | PositionerReason::Obstacle(_) | PositionerReason::Settled => {
-                PositionerActivity::Standing
-            }
+            _ => PositionerActivity::Standing,
         };
         let began = |what| doing == what && self.last != what;
         let (plans, moves, waits) = (

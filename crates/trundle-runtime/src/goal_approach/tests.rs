@@ -231,7 +231,8 @@ fn no_step_takes_longer_than_two_milliseconds() {
     let beside = (Pose2::new(2.0, 1.9, 0.0), Pose2::new(2.1, 2.2, 0.2));
     for (method, grid, ends) in [(Method::Optimal, &narrow, turned), (Method::Hong24, &open, beside)] {
         let standard = GoalApproachConfig::default();
-        let planner = DockingConfig { method, ..standard.planner.clone() };
+        let mut planner = standard.planner.clone();
+        planner.method = method;
         let config = GoalApproachConfig { planner, ..standard };
         let runs: Vec<Vec<f64>> = (0..5).map(|_| times_of_steps(&config, &footprint, grid, ends)).collect();
         let min = |i: usize| runs.iter().map(|run| run[i]).fold(f64::INFINITY, f64::min);

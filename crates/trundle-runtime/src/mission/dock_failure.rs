@@ -28,7 +28,7 @@ impl fmt::Display for DockFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoLight => f.write_str("no light of a charging station was seen"),
-            Self::LightLost => f.write_str("the light of the charging station was lost again and again"),
+            Self::LightLost => f.write_str("the light of the charging station was lost repeatedly"),
             Self::AxisUncertain { sigma } => {
                 write!(f, "the axis of the charging station is uncertain: standard deviation {sigma:.3} m")
             }

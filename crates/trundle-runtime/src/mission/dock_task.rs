@@ -282,3 +282,6 @@ fn survey_pose(station: &StationEstimate, index: usize) -> Pose2 {
 fn staging_pose(station: &StationEstimate) -> Pose2 {
     station.pose * Pose2::new(STAGING_DISTANCE_M, 0.0, PI)
 }
+
+#[cfg(test)]
+mod tests;

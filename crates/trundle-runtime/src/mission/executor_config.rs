@@ -15,9 +15,9 @@ pub struct MissionExecutorConfig {
     /// Time without progress after which a goal is given up, s, 1 to 3600. Progress is a fall of the rest of the path by 15 cm, or an
     /// observation of unseen floor on it. Default 75: longer than a person stands in a door.
     pub patience: f64,
-    /// Behaviour if an obstacle blocks the path: `detour`: another path of any length, and the end of the goal after the patience;
-    /// `wait`: a wait without a limit of time, in place of a much longer path around an obstacle on floor that was seen free. Default
-    /// `detour`.
+    /// Behaviour if an obstacle blocks the path: `detour`: another path of any length, and the end of the goal after the patience; `wait`:
+    /// a wait without a limit of time, in place of a much longer path around an obstacle on floor that was seen free. Default `detour`
+    /// (ours): each goal ends within a limited time.
     pub when_blocked: WhenBlocked,
     /// Standard deviation of the position above which the robot counts as lost and stops, m, 0.1 to 10. Default 0.7 (ours).
     pub lost_sigma: f64,

@@ -17,6 +17,7 @@ pub struct TaskGoal {
 
 /// Settings of one goal. A setting that is `None` is that of the robot file.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct GoalOptions {
     /// Time without progress after which the goal is given up \[s\], 1 to 3600. `None`: `mission_executor.patience_s`.
     #[serde(default, rename = "patience_s", skip_serializing_if = "Option::is_none")]

@@ -3,7 +3,7 @@
 //! A station shines into a sector of +-60 deg and 3 m, which contains a disc of 1.3 m radius. Light is therefore found if every free place
 //! has a searched place within 1.3 m and in sight.
 
-use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Vector2};
+use trundle_core::{Cell, CellIndex, Hypotenuse, OccupancyGrid, Pose2, Vector2};
 
 /// Radius around a searched place that counts as searched \[m\]. Source: the largest disc in the sector of a station's light.
 const SEARCHED_RADIUS_M: f64 = 1.3;
@@ -72,7 +72,7 @@ fn is_clear(grid: &OccupancyGrid, at: Vector2) -> bool {
     let reach = (CLEARANCE_M / step).ceil() as i32;
     let offsets = || (-reach..=reach).map(|i| f64::from(i) * step);
     offsets().all(|x| {
-        offsets().all(|y| x.hypot(y) > CLEARANCE_M || grid.at(at + Vector2::new(x, y)) == Cell::Free)
+        offsets().all(|y| x.hypotenuse(y) > CLEARANCE_M || grid.at(at + Vector2::new(x, y)) == Cell::Free)
     })
 }
 

@@ -103,7 +103,13 @@ impl ReasonKind {
             StopReason::NoWheels | StopReason::StaleWheels { .. } => Self::WheelsMissing,
             StopReason::Held(hold) => Self::of_hold(hold),
             StopReason::NotFinite => Self::CommandInvalid,
+            _ => Self::Unknown,
         }
+    }
+
+    /// Whether the floor of the path was not observed, or leaves the camera's view.
+    pub(crate) fn is_unseen_path(self) -> bool {
+        matches!(self, Self::UnseenFloor | Self::PathOutOfView)
     }
 
     /// Whether an obstacle blocks the path.

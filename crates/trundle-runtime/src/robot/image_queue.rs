@@ -36,3 +36,6 @@ impl ImageQueue {
         &self.dropped
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -68,17 +68,31 @@ impl GridMapping {
         self.earlier_revisions + self.mapper.revision()
     }
 
-    /// Replaces the grid.
+    /// Replaces the grid by a given one, to which scans are then matched.
     ///
     /// # Errors
     /// When its cells differ from the mapper's; the present grid then stays.
     pub(super) fn replace(&mut self, grid: &OccupancyGrid) -> Result<(), Invalid> {
+        let mapper = LiveMapper::on_given(self.mapper.mapper().config().clone(), grid)?;
+        self.continue_with(mapper, grid);
+        Ok(())
+    }
+
+    /// Replaces the grid by one of the robot's own drawing.
+    ///
+    /// # Errors
+    /// As [`GridMapping::replace`].
+    pub(super) fn resume(&mut self, grid: &OccupancyGrid) -> Result<(), Invalid> {
         let mapper = LiveMapper::from_grid(self.mapper.mapper().config().clone(), grid)?;
+        self.continue_with(mapper, grid);
+        Ok(())
+    }
+
+    fn continue_with(&mut self, mapper: LiveMapper, grid: &OccupancyGrid) {
         self.earlier_revisions = self.revision() + 1;
         self.mapper = mapper;
         self.uncertainty = MapUncertainty::of_certain(occupied(grid));
         self.scan_poses = ScanPoseLog::default();
-        Ok(())
     }
 
     /// Whether a scan at `now` is due for drawing, by the rate of the map.
@@ -88,7 +102,7 @@ impl GridMapping {
 
     /// The pose at which the scan fits the grid, near `guess`.
     pub(super) fn matched(&self, scan: &Scan, guess: Pose2) -> Option<ScanMatch> {
-        self.matcher.refine(self.mapper.mapper(), scan, guess)
+        self.matcher.refine(self.mapper.matched_map(), scan, guess)
     }
 
     /// Uncertainty of the grid at a pose that is matched by a scan; `None` where nothing was drawn.
@@ -98,7 +112,8 @@ impl GridMapping {
 
     /// Draws a scan taken at `pose` of this uncertainty, and the floor under the robot.
     pub(super) fn integrate_scan(&mut self, pose: Pose2, uncertainty: &PoseUncertainty, scan: &Scan) {
-        self.uncertainty.note(pose, uncertainty, scan.hits().map(|hit| pose.transform(hit)));
+        let hits = scan.hits().map(|hit| pose.transform(hit));
+        self.uncertainty.note(pose, uncertainty, hits.filter(|hit| !self.mapper.is_given_at(*hit)));
         self.mapper.insert(pose, scan);
         self.mapper.mark_free_disc(pose, self.inscribed_radius);
     }

@@ -52,10 +52,10 @@ impl Robot {
             // The scans already drawn are not moved: their visual poses are in a frame that has moved.
             self.mapping.scan_poses = ScanPoseLog::default();
         }
-        let goes_on = track.tracking == Tracking::Ok && !is_corrected && !track.relocalised;
-        let goes_on = goes_on && matches!(correction, Some(Correction::Applied { .. }));
+        let continues = track.tracking == Tracking::Ok && !is_corrected && !track.relocalised;
+        let continues = continues && matches!(correction, Some(Correction::Applied { .. }));
         let base = track.visual_from_camera * self.base_from_camera.inverse();
-        if goes_on {
+        if continues {
             self.odometry.add_visual_pose(track.stamp, odom_from_base, base);
         } else {
             self.odometry.break_visual_track(track.stamp);

@@ -22,7 +22,7 @@ impl Robot {
         if let Some(perception) = &mut robot.perception {
             perception.load_maps(&config, &checkpoint.visual)?;
         }
-        robot.mapping.replace(&checkpoint.grid)?;
+        robot.mapping.resume(&checkpoint.grid)?;
         robot.localizer = Localizer::new(config.localization, robot.base_from_camera)?
             .resumed(checkpoint.visual_maps.clone());
         checkpoint.station.iter().for_each(|station| robot.station.restore(station));
@@ -31,7 +31,7 @@ impl Robot {
         Ok(robot)
     }
 
-    /// A robot on a given map. Its start pose is the origin of the map frame.
+    /// A robot on a given map, to which it matches its scans. Its start pose is the origin of the map frame.
     ///
     /// # Errors
     /// When a number of the configuration is outside its range, or the map has other cells.

@@ -51,3 +51,6 @@ impl ChargingStation {
         self.estimator.restore(estimate);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! Implausible numbers, such as millimetres for metres, or degrees for radians.
 
 use crate::RobotConfig;
-use trundle_core::{FOCAL_LENGTH_PER_SIDE, Invalid};
+use trundle_core::{FOCAL_LENGTH_PER_SIDE, Hypotenuse, Invalid, MAX_FOOTPRINT_RADIUS_M};
 
 /// A number, its range for indoor robots, and the likely unit of a number outside the range.
 struct Plausible {
@@ -17,8 +17,6 @@ struct Plausible {
 const MAX_WHEEL_RADIUS_M: f64 = 0.5;
 /// Largest wheelbase of an indoor robot \[m\]. Source: ours, the width of a double door.
 const MAX_WHEELBASE_M: f64 = 2.0;
-/// Largest footprint radius \[m\]. Source: ours.
-const MAX_FOOTPRINT_RADIUS_M: f64 = 3.0;
 /// Largest forward speed \[m/s\]. Source: ours, a running person.
 const MAX_SPEED_M_S: f64 = 5.0;
 /// Largest turn rate \[rad/s\]. Source: ours, two turns per second.
@@ -71,7 +69,7 @@ fn lengths_and_speeds(config: &RobotConfig) -> [Plausible; 9] {
 
 /// The distance of the farthest corner of the outline from the base, m; 0 without corners.
 fn farthest_corner(config: &RobotConfig) -> f64 {
-    let distances = config.footprint.iter().flatten().map(|[x, y]| x.hypot(*y));
+    let distances = config.footprint.iter().flatten().map(|[x, y]| x.hypotenuse(*y));
     distances.fold(0.0, f64::max)
 }
 

@@ -72,7 +72,7 @@ pub(super) enum Found {
     Table,
 }
 
-/// Kind of a dotted key of a robot file; `None` of an unknown key.
+/// Kind of a dotted key of a robot file; `None` for an unknown key.
 pub(super) fn find(full: &str) -> Option<Found> {
     let inside = |setting: &Setting| setting.key.strip_prefix(full).is_some_and(|rest| rest.starts_with('.'));
     let settings = reference();

@@ -13,7 +13,7 @@ fn stamp(seconds: f64) -> Stamp {
 }
 
 fn body(seconds: f64, kind: BodyEventKind) -> SensorEvent {
-    SensorEvent::Body(BodyEvent { stamp: stamp(seconds), kind })
+    SensorEvent::Body(BodyEvent::new(stamp(seconds), kind))
 }
 
 /// Drives with wheels and gyro at 50 Hz and images at 10 Hz from `from` to `to`, s.

@@ -178,7 +178,7 @@ fn any_event() -> impl Strategy<Value = SensorEvent> {
         (stamp(), any::<bool>()).prop_map(|(stamp, pressed)| SensorEvent::Touch(Touch { stamp, pressed })),
         (stamp(), any::<bool>())
             .prop_map(|(stamp, over_edge)| SensorEvent::Cliff(Cliff { stamp, over_edge })),
-        (stamp(), body_event()).prop_map(|(stamp, kind)| SensorEvent::Body(BodyEvent { stamp, kind })),
+        (stamp(), body_event()).prop_map(|(stamp, kind)| SensorEvent::Body(BodyEvent::new(stamp, kind))),
         scan,
     ]
 }

@@ -180,10 +180,10 @@ fn a_docked_robot_knows_its_station_in_the_new_map_only_once_it_knows_its_pose()
     let charging = |seconds: i64| {
         let source = PowerSource::ChargingStation;
         let battery = Battery { voltage_v: 16.0, charge: Some(0.9), source, is_charging: true };
-        SensorEvent::Body(BodyEvent {
-            stamp: Stamp::from_nanos(seconds * 1_000_000_000),
-            kind: BodyEventKind::Battery(battery),
-        })
+        SensorEvent::Body(BodyEvent::new(
+            Stamp::from_nanos(seconds * 1_000_000_000),
+            BodyEventKind::Battery(battery),
+        ))
     };
     robot.step(&charging(2));
     assert!(robot.station().is_some());
@@ -192,10 +192,10 @@ fn a_docked_robot_knows_its_station_in_the_new_map_only_once_it_knows_its_pose()
     assert!(robot.station().is_none(), "at an unknown pose");
     let charging_ends =
         Battery { voltage_v: 16.0, charge: None, source: PowerSource::Battery, is_charging: false };
-    robot.step(&SensorEvent::Body(BodyEvent {
-        stamp: Stamp::from_nanos(2_000_000_000),
-        kind: BodyEventKind::Battery(charging_ends),
-    }));
+    robot.step(&SensorEvent::Body(BodyEvent::new(
+        Stamp::from_nanos(2_000_000_000),
+        BodyEventKind::Battery(charging_ends),
+    )));
     robot
         .execute(OperatorCommand::Begin(Mission::new(vec![Task::go(Pose2::new(0.4, 1.0, 1.0))]).unwrap()))
         .unwrap();

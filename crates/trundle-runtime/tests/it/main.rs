@@ -8,6 +8,8 @@ mod config;
 mod laws;
 mod load_map;
 mod logs;
+mod operator;
 mod robot;
 mod states;
+mod stop_priority;
 mod worker_threads;

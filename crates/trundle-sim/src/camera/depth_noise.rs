@@ -33,7 +33,7 @@ pub struct DepthNoise {
     /// Angle of incidence beyond which sigma is constant, deg, 0 to 89. Default 80: the models' pole at 90 deg is not
     /// physical.
     pub steepest_deg: f64,
-    /// Angle of incidence from which returns are lost, all of them at 90, deg, 0 to 90. Default 80; 90 turns it off.
+    /// Smallest angle of incidence at which returns are lost, all of them at 90, deg, 0 to 90. Default 80; 90 turns it off.
     pub grazing_from_deg: f64,
     /// Returns (luminance 0..1 times cosine over m^2) below this are lost with rising probability, 0 to 1. Default
     /// 0.004: black felt is lost from about 3 m on, as the sensor's users see. 0 turns it off.

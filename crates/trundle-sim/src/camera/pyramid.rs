@@ -56,13 +56,13 @@ impl Probe for Pyramid {
             let low = [node.low[0][i] - apex[0], node.low[1][i] - apex[1], node.low[2][i] - apex[2]];
             let high = [node.high[0][i] - apex[0], node.high[1][i] - apex[1], node.high[2][i] - apex[2]];
             let depth = -max([-axis[0], -axis[1], -axis[2]], low, high) - slack;
-            let is_met = (max(axis, low, high) + slack > 0.0)
+            let is_hit = (max(axis, low, high) + slack > 0.0)
                 & (max(left, low, high) + left_slack >= 0.0)
                 & (max(right, low, high) + right_slack >= 0.0)
                 & (max(top, low, high) + top_slack >= 0.0)
                 & (max(bottom, low, high) + bottom_slack >= 0.0);
             let depth = if depth > 0.0 { depth } else { 0.0 };
-            distances[i] = if is_met { depth } else { f32::INFINITY };
+            distances[i] = if is_hit { depth } else { f32::INFINITY };
         }
         distances
     }

@@ -1,11 +1,12 @@
 //! Texture planes of the faces of boxes, cylinders and triangles.
 
+use super::intersect_cylinder::LID_PART;
 use super::lamps::Lamps;
-use super::meet_cylinder::LID_PART;
 use super::patch::{Patch, Plane};
 use super::rays::{Rays, dot};
 use super::world_view::{WorldView, single};
 use crate::world::{Form, Kind};
+use trundle_core::angle_of_f32;
 
 impl<'w> WorldView<'w> {
     /// Colour of the surface `id` at `depth` m in the tile's pixel (row, column).
@@ -109,6 +110,6 @@ fn face_of_cylinder(
     }
     let (x, y, z) = (own[0] + depth * ray[0], own[1] + depth * ray[1], own[2] + depth * ray[2]);
     let (x, y) = (x / radius, y / radius);
-    let uv = [(y.atan2(x) + std::f32::consts::PI) * radius, height - z];
+    let uv = [(angle_of_f32(x, y) + std::f32::consts::PI) * radius, height - z];
     (0, Plane::through(uv, ray, depth, [x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, -1.0]))
 }

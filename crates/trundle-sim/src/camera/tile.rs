@@ -59,12 +59,12 @@ impl Tile {
         1.0 / min[0]
     }
 
-    /// Records the nearer surfaces of a row, for pixels with all bits of `is_met` set.
+    /// Records the nearer surfaces of a row, for pixels with all bits of `is_hit` set.
     #[inline(always)]
-    pub(super) fn keep(&mut self, row: usize, inverse_depth: &Row<f32>, is_met: &Row<u32>, id: &Row<u32>) {
+    pub(super) fn keep(&mut self, row: usize, inverse_depth: &Row<f32>, is_hit: &Row<u32>, id: &Row<u32>) {
         let (known, ids) = (&mut self.inverse_depth[row], &mut self.ids[row]);
         for i in 0..TILE_COLUMNS {
-            let nearer = f32::from_bits(inverse_depth[i].to_bits() & is_met[i]);
+            let nearer = f32::from_bits(inverse_depth[i].to_bits() & is_hit[i]);
             // Compiles to a plain store: masked stores are slow.
             ids[i] ^= (ids[i] ^ id[i]) & mask(nearer > known[i]);
             known[i] = larger(nearer, known[i]);

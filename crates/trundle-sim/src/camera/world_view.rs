@@ -1,8 +1,8 @@
 //! Visibility of a world from one camera pose: nearest surfaces for a tile of pixels.
 
-use super::meet_cuboid::meet_cuboid;
-use super::meet_cylinder::meet_cylinder;
-use super::meet_triangle::meet_block;
+use super::intersect_cuboid::intersect_cuboid;
+use super::intersect_cylinder::intersect_cylinder;
+use super::intersect_triangle::intersect_block;
 use super::pyramid::Pyramid;
 use super::rays::Rays;
 use super::tile::{ROWS, TILE_COLUMNS, Tile};
@@ -102,8 +102,10 @@ impl<'w> WorldView<'w> {
             let form = &self.world.forms()[solid as usize];
             let (origin, id) = (form.own(self.apex), self.first_id + 4 * solid);
             match form.kind {
-                Kind::Cuboid(half) => meet_cuboid(rays, form.axes, origin, half, id, tile),
-                Kind::Cylinder(radius, height) => meet_cylinder(rays, origin, (radius, height), id, tile),
+                Kind::Cuboid(half) => intersect_cuboid(rays, form.axes, origin, half, id, tile),
+                Kind::Cylinder(radius, height) => {
+                    intersect_cylinder(rays, origin, (radius, height), id, tile)
+                }
             }
             reach = tile.reach();
         }
@@ -117,7 +119,7 @@ impl<'w> WorldView<'w> {
         let mut walk = triangles.bvh().walk();
         while let Some(leaf) = walk.next(pyramid, reach) {
             let block = triangles.block(leaf);
-            if meet_block(rays, self.apex, block, first_id + block.first, 1.0 / reach, tile) {
+            if intersect_block(rays, self.apex, block, first_id + block.first, 1.0 / reach, tile) {
                 reach = tile.reach();
             }
         }

@@ -6,6 +6,7 @@ use trundle_core::{Invalid, require_in};
 /// The station of a scene that has one: light, receivers, contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct StationConfig {
     /// Half angle of the middle sector at the station, deg, 1 to 45. Default 10 (ours).
     pub middle_half_angle_deg: f64,

@@ -6,6 +6,7 @@ use trundle_core::{Invalid, require_in};
 /// Settings of a [`super::WaypointFollower`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct WaypointFollowerConfig {
     /// Cruising speed, m/s, 0.01 to 2. Default 0.3: images overlap well at 15 Hz.
     pub v: f64,

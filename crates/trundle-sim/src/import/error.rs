@@ -14,6 +14,7 @@ pub struct ImportError {
 
 /// A fault of a file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImportFault {
     /// The file system refuses.
     #[error("cannot be read: {reason}")]

@@ -7,6 +7,7 @@ const MAX_EXAMPLES: usize = 3;
 
 /// A note for the user about an imported file.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum ImportNote {
     /// Textures that cannot be read; their surfaces are grey.
     LostTextures {

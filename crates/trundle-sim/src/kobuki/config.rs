@@ -6,6 +6,7 @@ use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, Vector2, 
 /// The true robot: its data sheet, and how this one differs from it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct KobukiConfig {
     /// Nominal geometry: that of the motor controller and the odometry. Default the Kobuki of \[Li18\].
     pub drive: DifferentialDrive,

@@ -9,6 +9,7 @@ use trundle_core::{Invalid, require_in};
 /// Presets: [`LaserConfig::rplidar_a1`], [`LaserConfig::urg_04lx`], [`LaserConfig::ust_10lx`], [`LaserConfig::lds_01`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct LaserConfig {
     /// Before the base's origin, m, -5 to 5. Default 0.
     pub x: f64,

@@ -4,7 +4,7 @@ use super::LaserConfig;
 use crate::rng::{GOLDEN_RATIO_STEP, hash, mix, normal, unit};
 use crate::world::SceneSnapshot;
 use rayon::prelude::*;
-use trundle_core::{Beam, BeamTimes, Invalid, Pose2, Scan, Stamp, Vector2, Vector3};
+use trundle_core::{Beam, BeamTimes, Hypotenuse, Invalid, Pose2, Scan, Stamp, Vector2, Vector3};
 
 /// Fewest beams that one thread takes. Source: ours.
 const MIN_BEAMS_PER_THREAD: usize = 64;
@@ -72,7 +72,7 @@ impl Laser {
         let Some(range) = range else {
             return if c.silence_is_free { Beam::Free { range: c.range_max } } else { Beam::Unseen };
         };
-        let sigma = c.noise.hypot(c.noise_part * range);
+        let sigma = c.noise.hypotenuse(c.noise_part * range);
         let noisy = range + sigma * normal(mix(bits));
         let range = if c.quantum > 0.0 { (noisy / c.quantum).round() * c.quantum } else { noisy };
         if (c.range_min..=c.range_max).contains(&range) { Beam::Hit { range } } else { Beam::Unseen }

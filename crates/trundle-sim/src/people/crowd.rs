@@ -6,7 +6,7 @@ use super::person::Person;
 use super::walker::Walker;
 use crate::world::{HeightBand, Mover, Obstacles};
 use std::sync::Arc;
-use trundle_core::{Footprint, Invalid, Pose2};
+use trundle_core::{Footprint, Hypotenuse, Invalid, Pose2};
 
 /// Disc in which a robot makes a person wait: distance of its middle ahead of the person, and radius, m. Source: ours.
 const YIELD_DISTANCE_M: f64 = 0.5;
@@ -67,7 +67,7 @@ impl Crowd {
         for (i, person) in self.people.iter().enumerate() {
             for (from, to) in person.legs() {
                 let (a, b) = (person.waypoints[from], person.waypoints[to]);
-                let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+                let length = (b[0] - a[0]).hypotenuse(b[1] - a[1]);
                 let pieces = (length / 0.05).ceil().max(1.0);
                 for k in 0..=pieces as usize {
                     let t = k as f64 / pieces;

@@ -4,6 +4,7 @@ use trundle_core::{Invalid, Stamp};
 
 /// Errors of a simulated robot.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SimError {
     /// A number of the configuration or the scene.
     #[error(transparent)]

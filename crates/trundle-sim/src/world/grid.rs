@@ -7,8 +7,8 @@ use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, requir
 /// Fraction of their side by which cells are shrunk: a wall that ends at a cell's border does not fill the cell. Source: ours.
 const CELL_SHRINK_RATIO: f64 = 1e-6;
 
-/// Most cells of a grid: one byte each. Source: ours.
-const MOST_CELLS: f64 = (1_u64 << 31) as f64;
+/// Maximum number of cells of a grid: one byte each. Source: ours.
+const MAX_CELLS: f64 = (1_u64 << 31) as f64;
 
 impl World {
     /// The true map: every cell that overlaps a solid in the height band is occupied, all others are free.
@@ -33,8 +33,8 @@ impl World {
         let low = (self.bounds.min.xy() / resolution).map(f64::floor);
         let high = (self.bounds.max.xy() / resolution).map(f64::ceil);
         let size = (high - low).map(|n| n.max(1.0));
-        if size.x * size.y > MOST_CELLS {
-            let min = ((self.bounds.max - self.bounds.min).xy().product() / MOST_CELLS).sqrt();
+        if size.x * size.y > MAX_CELLS {
+            let min = ((self.bounds.max - self.bounds.min).xy().product() / MAX_CELLS).sqrt();
             let value = format!("{resolution} m, {:.3e} x {:.3e} cells", size.x, size.y);
             let expected = format!("at most 2^31 cells: {min:.1e} m or more for this world");
             return Err(Invalid::new("resolution", value, "", expected));

@@ -1,6 +1,6 @@
 //! Ray casting: the first surface that a ray meets.
 
-use super::meet_triangle::{meet_block, normal_towards};
+use super::intersect_triangle::{intersect_block, normal_towards};
 use super::probe::RayProbe;
 use super::{Mover, SceneSnapshot, World};
 use trundle_core::Vector3;
@@ -97,7 +97,8 @@ impl World {
         while let Some(leaf) = walk.next(probe, wide(reach)) {
             let (first, end) = self.bvh.leaf(leaf);
             for &solid in &self.bvh.items()[first..end] {
-                if let Some((distance, normal)) = self.solids[solid as usize].shape.meet(origin, direction)
+                if let Some((distance, normal)) =
+                    self.solids[solid as usize].shape.intersect(origin, direction)
                     && distance < reach
                 {
                     reach = distance;
@@ -120,7 +121,7 @@ impl World {
         let (mut reach, mut nearest) = (limit, None);
         let mut walk = self.triangles.bvh().walk();
         while let Some(leaf) = walk.next(probe, wide(reach)) {
-            let distances = meet_block(self.triangles.block(leaf), origin, direction);
+            let distances = intersect_block(self.triangles.block(leaf), origin, direction);
             for (lane, &distance) in distances.iter().enumerate() {
                 if distance < reach {
                     reach = distance;

@@ -2,19 +2,17 @@
 
 use super::{almost_blind, hall};
 use trundle_core::{ColorImage, DepthImage, PinholeCamera, Pose2, RgbdImage, RobotBody, SensorEvent, Twist2};
-use trundle_sim::{Exposure, Scene, SimConfig, Simulator};
+use trundle_sim::{Exposure, Scene, Simulator};
 
 /// The last of `n` images while turning at `omega` rad/s before a wall of bricks.
 fn image(shutter_s: f64, omega: f64, n: usize) -> RgbdImage {
     let start = Pose2::new(-2.0, 0.0, 0.0);
     let demo = Scene::by_name("demo", 1).unwrap();
     let scene = Scene { start: demo.start, world: demo.world, ..hall(start) };
-    let config = SimConfig {
-        camera: PinholeCamera::from_field_of_view((96, 64), (1.2, 0.8)).unwrap(),
-        camera_rate_hz: 10.0,
-        shutter_s,
-        ..almost_blind().without_noise()
-    };
+    let mut config = almost_blind().without_noise();
+    config.camera = PinholeCamera::from_field_of_view((96, 64), (1.2, 0.8)).unwrap();
+    config.camera_rate_hz = 10.0;
+    config.shutter_s = shutter_s;
     let mut robot = Simulator::new(scene, config, 1).unwrap();
     robot.command(Twist2::new(0.0, omega)).unwrap();
     let mut images = Vec::new();
@@ -58,7 +56,8 @@ fn a_camera_at_rest_has_no_blur() {
 
 #[test]
 fn exposure_is_wired() {
-    let mut config = SimConfig { camera_rate_hz: 10.0, ..almost_blind().without_noise() };
+    let mut config = almost_blind().without_noise();
+    config.camera_rate_hz = 10.0;
     let mut mean = |gain: f64| {
         config.color_noise.exposure = Exposure::fixed(gain);
         let mut robot = Simulator::new(hall(Pose2::IDENTITY), config.clone(), 1).unwrap();

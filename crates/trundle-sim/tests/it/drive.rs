@@ -77,7 +77,8 @@ fn unequal_wheels_drive_the_arcs_of_their_radii() {
     (kobuki.wheel_radius_error, kobuki.wheelbase_error) = (0.02, 0.02);
     let start = Pose2::new(-0.5, -0.5, 0.3);
     for seed in 0..3 {
-        let config = SimConfig { kobuki: kobuki.clone(), ..almost_blind().without_noise() };
+        let mut config = almost_blind().without_noise();
+        config.kobuki = kobuki.clone();
         let mut robot = Simulator::new(hall(start), config, seed).unwrap();
         let wheels = robot.true_wheels();
         let listener = drive_square(&mut robot);
@@ -157,11 +158,10 @@ fn no_way_of_driving_gets_into_a_box() {
 
 #[test]
 fn a_long_body_off_its_wheels_touches_with_its_nose_and_its_tail() {
-    let kobuki = KobukiConfig {
-        footprint: Some(vec![[0.5, 0.1], [0.5, -0.1], [-0.1, -0.15], [-0.1, 0.15]]),
-        ..KobukiConfig::default()
-    };
-    let config = SimConfig { kobuki, ..almost_blind() };
+    let mut kobuki = KobukiConfig::default();
+    kobuki.footprint = Some(vec![[0.5, 0.1], [0.5, -0.1], [-0.1, -0.15], [-0.1, 0.15]]);
+    let mut config = almost_blind();
+    config.kobuki = kobuki;
     let mut robot = Simulator::new(hall(Pose2::new(2.0, 0.0, 0.0)), config, 1).unwrap();
     let mut listener = Listener::default();
     listener.drive(&mut robot, Twist2::new(0.5, 0.0), 3.0);
@@ -198,8 +198,10 @@ fn an_edge_and_a_hole_in_the_floor_are_cliffs() {
 
 #[test]
 fn a_base_that_times_out_stops_without_commands() {
-    let kobuki = KobukiConfig { command_timeout: 0.6, ..KobukiConfig::default().without_noise() };
-    let config = SimConfig { kobuki, ..almost_blind() };
+    let mut kobuki = KobukiConfig::default().without_noise();
+    kobuki.command_timeout = 0.6;
+    let mut config = almost_blind();
+    config.kobuki = kobuki;
     let mut robot = Simulator::new(hall(Pose2::IDENTITY), config, 1).unwrap();
     let mut listener = Listener::default();
     listener.drive(&mut robot, Twist2::new(0.3, 0.0), 2.0);
@@ -269,7 +271,8 @@ fn small_house() -> Option<Scene> {
 #[test]
 fn in_a_house_of_triangles_no_way_of_driving_gets_into_anything() {
     let Some(scene) = small_house() else { return };
-    let config = SimConfig { has_camera: false, ..SimConfig::default() };
+    let mut config = SimConfig::default();
+    config.has_camera = false;
     let mut robot = Simulator::new(scene, config, 3).unwrap();
     let mut listener = Listener::default();
     for i in 0..60 {
@@ -310,7 +313,9 @@ fn bad_starts_and_configurations_are_refused_with_their_numbers() {
     assert!(in_wall.contains("'hall' at (2.900, 0.000) m is 0.075 m inside"), "{in_wall}");
     let nowhere = refused(Pose2 { x: f64::NAN, ..Pose2::IDENTITY }, almost_blind());
     assert!(nowhere.contains("pose x is NaN m"), "{nowhere}");
-    let too_fast = refused(Pose2::IDENTITY, SimConfig { camera_rate_hz: 0.0, ..almost_blind() });
+    let mut sim = almost_blind();
+    sim.camera_rate_hz = 0.0;
+    let too_fast = refused(Pose2::IDENTITY, sim);
     assert!(too_fast.contains("camera_rate_hz is 0 Hz"), "{too_fast}");
     assert!(
         Scene::by_name("moon", 1).unwrap_err().to_string().contains("scene is moon, expected one of demo")

@@ -34,7 +34,9 @@ fn events_come_by_stamp_and_at_equal_stamps_in_the_fixed_order() {
     let mut scene = hall(Pose2::new(2.5, 0.0, 0.0));
     scene.world = World::new(scene.world.solids()[..4].to_vec(), 1).unwrap();
     let laser = Some(LaserConfig::default());
-    let config = SimConfig { camera_rate_hz: 15.0, laser, ..almost_blind() };
+    let mut config = almost_blind();
+    config.camera_rate_hz = 15.0;
+    config.laser = laser;
     let mut robot = Simulator::new(scene, config, 1).unwrap();
     robot.command(Twist2::new(0.5, 0.0)).unwrap();
     let events = events_until(&mut robot, 2.0);

@@ -13,13 +13,11 @@ fn broken(kind: FaultKind) -> Simulator {
 
 fn broken_at(start: Pose2, kind: FaultKind) -> Result<Simulator, SimError> {
     let fault = Fault { from_s: 1.0, to_s: 2.0, kind };
-    let config = SimConfig {
-        camera: PinholeCamera::from_field_of_view((32, 24), (1.2, 0.9)).unwrap(),
-        camera_rate_hz: 10.0,
-        laser: Some(LaserConfig::default()),
-        faults: FaultSchedule { faults: vec![fault] },
-        ..SimConfig::default()
-    };
+    let mut config = SimConfig::default();
+    config.camera = PinholeCamera::from_field_of_view((32, 24), (1.2, 0.9)).unwrap();
+    config.camera_rate_hz = 10.0;
+    config.laser = Some(LaserConfig::default());
+    config.faults = FaultSchedule { faults: vec![fault] };
     Simulator::new(hall(start), config.without_noise(), 1)
 }
 
@@ -283,8 +281,10 @@ fn a_robot_that_is_put_beside_a_box_can_still_not_get_into_it() {
     solids.push(block([1.5, 1.0, 0.2], [0.4, 0.4, 0.4], 0.0));
     scene.world = World::new(solids, 1).unwrap();
     let faults = FaultSchedule { faults: vec![Fault { from_s: 0.5, to_s: 1.0, kind: put }] };
-    let mut robot =
-        Simulator::new(scene, SimConfig { has_camera: false, faults, ..SimConfig::default() }, 1).unwrap();
+    let mut config = SimConfig::default();
+    config.has_camera = false;
+    config.faults = faults;
+    let mut robot = Simulator::new(scene, config, 1).unwrap();
     robot.command(Twist2::new(0.5, 0.0)).unwrap();
     while robot.stamp().as_secs() < 3.0 {
         robot.next_event().unwrap();

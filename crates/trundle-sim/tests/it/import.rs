@@ -127,7 +127,9 @@ fn y_up_is_turned_and_z_up_is_not() {
     let z_up = read(&description(INDEXED, "", ""), &GltfOptions::z_up()).unwrap();
     assert_eq!(corner(&z_up, 2), [1.0, 1.0, 0.0]);
     assert_eq!(z_up.uvs()[2], [1.0, 0.0]);
-    let centimetres = GltfOptions { up: UpAxis::Z, scale: 0.01, ..GltfOptions::default() };
+    let mut centimetres = GltfOptions::default();
+    centimetres.up = UpAxis::Z;
+    centimetres.scale = 0.01;
     assert_eq!(corner(&read(&description(INDEXED, "", ""), &centimetres).unwrap(), 2), [0.01, 0.01, 0.0]);
 }
 
@@ -161,7 +163,9 @@ fn transforms_of_nodes_multiply() {
 
 /// z up with a given floor height: no translation.
 fn as_it_lies() -> GltfOptions {
-    GltfOptions { floor: Some(0.0), ..GltfOptions::z_up() }
+    let mut options = GltfOptions::z_up();
+    options.floor = Some(0.0);
+    options
 }
 
 /// Materials with a red factor and the image that `image` describes.
@@ -275,7 +279,9 @@ fn a_floor_elsewhere_comes_to_lie_at_zero() {
     let ImportedScene { mesh, notes } = flat(below, GltfOptions::z_up());
     assert_eq!(corner(&mesh, 2), [1.0, 1.0, 0.0]);
     assert_eq!(notes, [ImportNote::FloorMoved { height_m: -10.0 }]);
-    let named = flat(below, GltfOptions { floor: Some(-12.0), ..GltfOptions::z_up() });
+    let mut gltf = GltfOptions::z_up();
+    gltf.floor = Some(-12.0);
+    let named = flat(below, gltf);
     assert_eq!((corner(&named.mesh, 2), named.notes.len()), ([1.0, 1.0, 2.0], 0));
     let near = flat(r#","translation":[0,0,0.1]"#, GltfOptions::z_up());
     assert_eq!((corner(&near.mesh, 2), near.notes.len()), ([1.0, 1.0, 0.1], 0), "left where it is");
@@ -287,7 +293,8 @@ fn a_floor_elsewhere_comes_to_lie_at_zero() {
 #[test]
 fn a_scene_of_another_unit_is_noted() {
     let notes = |scale: f64| {
-        let options = GltfOptions { scale, ..GltfOptions::default() };
+        let mut options = GltfOptions::default();
+        options.scale = scale;
         scene(&description(INDEXED, "", ""), &options).unwrap().notes
     };
     assert_eq!(notes(2.0), []);

@@ -1,11 +1,14 @@
 //! The laser scanner against closed forms.
 
 use super::{almost_blind, hall};
-use trundle_core::{Beam, Pose2, RobotBody, Scan, SensorEvent, Twist2};
+use trundle_core::{Beam, Hypotenuse, Pose2, RobotBody, Scan, SensorEvent, Twist2};
 use trundle_sim::{LaserConfig, Scene, SimConfig, Simulator};
 
 fn config(laser: LaserConfig) -> SimConfig {
-    SimConfig { laser: Some(laser), has_camera: false, ..almost_blind() }
+    let mut config = almost_blind();
+    config.laser = Some(laser);
+    config.has_camera = false;
+    config
 }
 
 fn scans(robot: &mut Simulator, n: usize) -> Vec<Scan> {
@@ -21,15 +24,13 @@ fn scans(robot: &mut Simulator, n: usize) -> Vec<Scan> {
 #[test]
 fn ranges_in_a_square_hall_are_the_closed_form() {
     let start = Pose2::new(0.7, -1.1, 0.6);
-    let laser = LaserConfig {
-        x: 0.1,
-        y: -0.05,
-        yaw: 0.4,
-        field_of_view: 4.0,
-        beams: 777,
-        range_min: 0.0,
-        ..LaserConfig::default()
-    };
+    let mut laser = LaserConfig::default();
+    laser.x = 0.1;
+    laser.y = -0.05;
+    laser.yaw = 0.4;
+    laser.field_of_view = 4.0;
+    laser.beams = 777;
+    laser.range_min = 0.0;
     let mut robot = Simulator::new(hall(start), config(laser), 1).unwrap();
     let scan = &scans(&mut robot, 1)[0];
     assert_eq!(scan.beams().len(), 777);
@@ -46,29 +47,30 @@ fn ranges_in_a_square_hall_are_the_closed_form() {
 
 #[test]
 fn beyond_its_range_it_is_silent_and_too_near_it_is_blind() {
-    let laser = LaserConfig { range_min: 2.0, range_max: 3.2, ..LaserConfig::default() };
+    let mut laser = LaserConfig::default();
+    laser.range_min = 2.0;
+    laser.range_max = 3.2;
     let mut robot = Simulator::new(hall(Pose2::new(1.5, 0.0, 0.0)), config(laser.clone()), 1).unwrap();
     let scan = &scans(&mut robot, 1)[0];
     // Beam 180 hits at 1.5 m ahead, beam 0 at 4.5 m behind, beam 90 at 3 m to the right.
     assert_eq!(scan.beams()[180], Beam::Unseen);
     assert_eq!(scan.beams()[0], Beam::Free { range: 3.2 });
     assert!(matches!(scan.beams()[90], Beam::Hit { range } if (range - 3.0).abs() < 1e-9));
-    let shy = LaserConfig { silence_is_free: false, ..laser };
+    let mut shy = laser;
+    shy.silence_is_free = false;
     let mut robot = Simulator::new(hall(Pose2::new(1.5, 0.0, 0.0)), config(shy), 1).unwrap();
     assert_eq!(scans(&mut robot, 1)[0].beams()[0], Beam::Unseen);
 }
 
 #[test]
 fn noise_drop_outs_and_grazing_losses_are_as_configured() {
-    let laser = LaserConfig {
-        noise: 0.01,
-        noise_part: 0.005,
-        quantum: 0.001,
-        drop_out: 0.1,
-        max_incidence: 40_f64.to_radians(),
-        silence_is_free: true,
-        ..LaserConfig::default()
-    };
+    let mut laser = LaserConfig::default();
+    laser.noise = 0.01;
+    laser.noise_part = 0.005;
+    laser.quantum = 0.001;
+    laser.drop_out = 0.1;
+    laser.max_incidence = 40_f64.to_radians();
+    laser.silence_is_free = true;
     let mut robot = Simulator::new(hall(Pose2::IDENTITY), config(laser), 3).unwrap();
     let (mut square, mut hits, mut lost, mut dropped) = (0.0, 0, 0, 0);
     for scan in scans(&mut robot, 60) {
@@ -80,7 +82,7 @@ fn noise_drop_outs_and_grazing_losses_are_as_configured() {
                 Beam::Hit { range } => {
                     assert!(incidence < 40.01);
                     assert!(((range / 0.001).round() * 0.001 - range).abs() < 1e-9);
-                    square += ((range - expected) / 0.01_f64.hypot(0.005 * expected)).powi(2);
+                    square += ((range - expected) / 0.01_f64.hypotenuse(0.005 * expected)).powi(2);
                     hits += 1;
                 }
                 Beam::Free { .. } => {
@@ -100,8 +102,10 @@ fn noise_drop_outs_and_grazing_losses_are_as_configured() {
 #[test]
 fn a_sweeping_laser_is_bent_by_a_turn_and_a_still_one_is_not() {
     let scan_while_turning = |sweeps: bool| {
-        let laser = LaserConfig { sweeps, ..LaserConfig::default() };
-        let robot_config = SimConfig { kobuki: almost_blind().kobuki.without_noise(), ..config(laser) };
+        let mut laser = LaserConfig::default();
+        laser.sweeps = sweeps;
+        let mut robot_config = config(laser);
+        robot_config.kobuki = almost_blind().kobuki.without_noise();
         let mut robot = Simulator::new(hall(Pose2::IDENTITY), robot_config, 1).unwrap();
         robot.command(Twist2::new(0.0, 1.0)).unwrap();
         let scan = scans(&mut robot, 16).pop().unwrap();

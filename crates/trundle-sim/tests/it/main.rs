@@ -44,7 +44,10 @@ fn hall(start: Pose2) -> Scene {
 /// A robot with a slow camera of few pixels, for tests of the wheels.
 fn almost_blind() -> SimConfig {
     let camera = trundle_core::PinholeCamera::from_field_of_view((16, 8), (1.2, 0.8)).unwrap();
-    SimConfig { camera, camera_rate_hz: 1.0, ..SimConfig::default() }
+    let mut config = SimConfig::default();
+    config.camera = camera;
+    config.camera_rate_hz = 1.0;
+    config
 }
 
 /// A file of the shared data; prints a note and returns `None` if absent.

@@ -13,7 +13,9 @@ fn walker(waypoints: &[[f64; 2]]) -> Person {
 }
 
 fn quiet() -> SimConfig {
-    SimConfig { has_camera: false, ..almost_blind().without_noise() }
+    let mut config = almost_blind().without_noise();
+    config.has_camera = false;
+    config
 }
 
 /// Runs for `seconds`; the robot and the people never overlap.
@@ -79,9 +81,13 @@ fn next_scan(robot: &mut Simulator) -> (Scan, Pose2) {
 
 #[test]
 fn the_laser_sees_two_legs_that_swing() {
-    let laser = Some(LaserConfig { beams: 3600, ..LaserConfig::default() });
+    let mut config = LaserConfig::default();
+    config.beams = 3600;
+    let laser = Some(config);
     let scene = with_people(Pose2::IDENTITY, vec![walker(&[[1.5, -2.0], [1.5, 2.0]])]);
-    let mut robot = Simulator::new(scene, SimConfig { laser, ..quiet() }, 1).unwrap();
+    let mut sim = quiet();
+    sim.laser = laser;
+    let mut robot = Simulator::new(scene, sim, 1).unwrap();
     let (mut widest, mut narrowest) = (0.0_f64, f64::INFINITY);
     for _ in 0..30 {
         let (scan, person) = next_scan(&mut robot);

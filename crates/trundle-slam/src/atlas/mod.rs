@@ -1,4 +1,4 @@
-//! Several maps, each with a frame of its own.
+//! Several maps, each with its own frame.
 
 pub(crate) mod map_collection;
 pub(crate) mod map_merger;

@@ -1,4 +1,4 @@
-//! One map with a frame of its own, its index of places and its optimisation.
+//! One map with its own frame, its index of places and its optimisation.
 
 use crate::ids::{KeyframeId, LandmarkId, MapId};
 use crate::map::keyframe::Keyframe;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 use trundle_core::Pose3;
 use trundle_vision::Vocabulary;
 
-/// A map with a frame of its own \[Campos21, sec. VI\].
+/// A map with its own frame \[Campos21, sec. VI\].
 #[derive(Debug, Clone)]
 pub(crate) struct SubMap {
     pub id: MapId,

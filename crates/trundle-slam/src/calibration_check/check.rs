@@ -137,7 +137,10 @@ pub(crate) fn pair_of(a: &Frame, b: &Frame, model: &ObservationModel) -> Option<
         });
     }
     let (pixel_sigma, depth_sigma) = (LOOSE_PIXEL_SIGMA_PX, LOOSE_DEPTH_SIGMA_M);
-    let config = RansacConfig { pixel_sigma, depth_sigma, min_inliers: MIN_MATCHES, ..Default::default() };
+    let mut config = RansacConfig::default();
+    config.pixel_sigma = pixel_sigma;
+    config.depth_sigma = depth_sigma;
+    config.min_inliers = MIN_MATCHES;
     let motion = estimate_rigid_motion(&points.0, &points.1, camera, &config, 0)?;
     Some(Pair { b_from_a: motion.b_from_a, matches })
 }

@@ -4,6 +4,7 @@ use std::fmt;
 
 /// A setting that is probably wrong, and the evidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum CalibrationIssue {
     /// Many depths are outside the range of any depth camera.
     DepthRange {
@@ -72,9 +73,9 @@ impl fmt::Display for CalibrationIssue {
                 100.0 * part,
                 if beyond { "farther" } else { "nearer" },
                 if beyond {
-                    "too small (1000 is set, 5000 is right)"
+                    "too small (1000 where 5000 is right makes depths 5 times as large)"
                 } else {
-                    "too large (5000 is set, 1000 is right)"
+                    "too large (5000 where 1000 is right makes depths a fifth)"
                 },
             ),
             Self::NoDepth => write!(

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
-use trundle_core::{DepthImage, Invalid, Vector2, require_in};
+use trundle_core::{DepthImage, Hypotenuse, Invalid, Vector2, require_in};
 use trundle_optim::InverseDepth;
 
 /// Offsets of the pixels by which the slope of the depth is fitted, px of the octave; each with its mirror image. Source: ours.
@@ -20,6 +20,7 @@ pub(crate) const MAX_RELATIVE_SIGMA: f64 = 0.1;
 /// Range and noise of the depth camera.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct DepthConfig {
     /// Nearest usable depth, m, 0.001 to 10. Default 0.3: below it no Kinect measures.
     pub nearest: f64,
@@ -54,7 +55,7 @@ impl DepthConfig {
 
     /// Standard deviation of a measured `depth` (m) on a smooth surface, m.
     pub fn sigma_at(&self, depth: f64) -> f64 {
-        self.sigma.hypot(self.sigma_quadratic * depth * depth)
+        self.sigma.hypotenuse(self.sigma_quadratic * depth * depth)
     }
 
     /// The inverse depth at a raw `pixel`, if the image has one in range.
@@ -72,7 +73,7 @@ impl DepthConfig {
                 }
             }
         }
-        let sigma = self.sigma_at(depth).hypot((high - low) / 2.0);
+        let sigma = self.sigma_at(depth).hypotenuse((high - low) / 2.0);
         Some(InverseDepth { value: 1.0 / depth, sigma: sigma / (depth * depth) })
     }
 

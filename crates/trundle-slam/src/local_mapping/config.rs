@@ -7,6 +7,7 @@ use trundle_optim::BundleConfig;
 /// Growth and refinement of the landmark map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct LocalMappingConfig {
     /// Smallest number of features with depth in the first keyframe of a map, 10 or more. A larger number delays the start of a map.
     /// Default 50 (ours).
@@ -36,6 +37,8 @@ pub struct LocalMappingConfig {
 
 impl Default for LocalMappingConfig {
     fn default() -> Self {
+        let mut bundle = BundleConfig::default();
+        bundle.steps = 5;
         Self {
             min_points: 50,
             local_keyframes: 10,
@@ -44,7 +47,7 @@ impl Default for LocalMappingConfig {
             trial_keyframes: 3,
             trial_frames: 10,
             found_ratio: 0.25,
-            bundle: BundleConfig { steps: 5, ..BundleConfig::default() },
+            bundle,
             work_per_frame: 100_000,
         }
     }

@@ -5,9 +5,9 @@ use crate::local_mapping::keyframe_policy::KeyframeConfig;
 use crate::map::landmark::Landmark;
 use crate::map::landmark_map::LandmarkMap;
 
-/// Number of other keyframes with a landmark from which a keyframe is not needed for it: 3. Source: \[MurArtal17\].
+/// Smallest number of other keyframes with a landmark at which a keyframe is not needed for it: 3. Source: \[MurArtal17\].
 const MIN_OTHER_OBSERVERS: usize = 3;
-/// Fraction of redundant landmarks from which a keyframe is removed: 0.9. Source: \[MurArtal17\].
+/// Smallest fraction of redundant landmarks at which a keyframe is removed: 0.9. Source: \[MurArtal17\].
 const MIN_REDUNDANT_RATIO: f64 = 0.9;
 /// Number of newest keyframes that are never removed: 5. Tracking depends on these keyframes, and their landmarks are not yet confirmed.
 /// Source: ours.

@@ -10,6 +10,7 @@ use trundle_core::{Invalid, Pose3, Vector2, require_in};
 /// When a frame becomes a keyframe. Time does not matter: a camera at rest adds no keyframe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct KeyframeConfig {
     /// Distance from a keyframe up to which no frame becomes a keyframe, unless turned by more than `min_rotation`, m, above 0, to 10. A larger
     /// value makes fewer keyframes. Default 0.03: well over the tracking noise.

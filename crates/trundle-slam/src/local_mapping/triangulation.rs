@@ -6,7 +6,7 @@ use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::keyframe::Keyframe;
 use crate::map::landmark_map::LandmarkMap;
 use crate::matching::projection_search::MatchThresholds;
-use trundle_core::{Pose3, Vector3};
+use trundle_core::{Hypotenuse, Pose3, Vector3};
 use trundle_optim::{CHI2_95_2, PointObservation};
 
 /// Largest cosine of the angle between the two rays to a point: 0.9998 (1.15 deg). With a smaller angle the distance is too uncertain: at
@@ -104,7 +104,7 @@ impl Pair<'_> {
         // The plane through both cameras and the point cuts the image along this line.
         let normal = self.b_from_a.translation.cross(&self.b_from_a.rotate(self.ray(self.a, own)));
         let camera = &self.model.camera;
-        let line = normal / (normal.x / camera.fx()).hypot(normal.y / camera.fy());
+        let line = normal / (normal.x / camera.fx()).hypotenuse(normal.y / camera.fy());
         let (mut best, mut next) = ((u32::MAX, usize::MAX), u32::MAX);
         for other in theirs {
             let off = line.x * other.x + line.y * other.y + line.z;

@@ -57,12 +57,12 @@ impl LandmarkMap {
         self.keyframes.bound()
     }
 
-    /// The oldest keyframe, which holds the map in place; `None` of an empty map.
+    /// The oldest keyframe, which holds the map in place; `None` for an empty map.
     pub fn first_keyframe(&self) -> Option<KeyframeId> {
         self.keyframe_ids().next()
     }
 
-    /// The newest keyframe; `None` of an empty map.
+    /// The newest keyframe; `None` for an empty map.
     pub fn newest_keyframe(&self) -> Option<KeyframeId> {
         self.keyframe_ids().next_back()
     }

@@ -8,7 +8,7 @@ use crate::map::reference_patch::ReferencePatch;
 use crate::matching::matched_pose::MatchedPose;
 use crate::matching::point_match::PointMatch;
 use std::collections::BTreeSet;
-use trundle_core::{Pose3, Vector2};
+use trundle_core::{Hypotenuse, Pose3, Vector2};
 use trundle_vision::Template;
 
 /// Largest displacement of a feature by alignment: 2 px of its octave. Beyond it the patch is a different point. Source: ours.
@@ -127,7 +127,7 @@ fn compare_patches(
     };
     let Some(found) = templates.find_map(find) else { return PatchComparison::Different };
     let raw = raw(&frame.features.keypoints[m.feature]) + found.offset.cast() * scale;
-    let sigma = MIN_ALIGNED_SIGMA_PX.hypot(f64::from(found.sigma)).min(model.pixel_sigma) * scale;
+    let sigma = MIN_ALIGNED_SIGMA_PX.hypotenuse(f64::from(found.sigma)).min(model.pixel_sigma) * scale;
     PatchComparison::Aligned(Aligned { raw, pixel: model.camera.undistort(raw), sigma, is_aligned: true })
 }
 

@@ -3,11 +3,12 @@
 use crate::motion::uncertain_pose::of_sigmas;
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
-use trundle_core::{CameraMotion, Invalid, PinholeCamera, Pose3, require_in};
+use trundle_core::{CameraMotion, Hypotenuse, Invalid, PinholeCamera, Pose3, require_in};
 
 /// Growth of a pose's uncertainty without located images.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct MotionModelConfig {
     /// Standard deviation of a motion prior after a motion of 1 m, m, and after a rotation of 1 rad, rad, 0 to 1. It grows with the root of
     /// the length, since errors of steps are independent \[Chong97\]. A larger value trusts images more than wheels. Default 0.05: wheels
@@ -18,7 +19,7 @@ pub struct MotionModelConfig {
     /// Standard deviation of the speed of a camera without a prior, m/s, and of its turn rate, rad/s, 0 to 100. Default 1 (ours).
     pub unseen: f64,
     /// Readout time of a camera that has none of its own, s, 0 to 0.05. Deprecated: set the camera's readout time
-    /// ([`PinholeCamera::with_readout`]). Default 0.
+    /// ([`PinholeCamera::with_readout`]). Default 0: a global shutter.
     #[serde(skip_serializing_if = "is_zero")]
     pub readout: f64,
 }
@@ -37,7 +38,7 @@ impl MotionModelConfig {
     /// Standard deviations of a motion prior's translation (m) and rotation (rad) over a time, s.
     pub fn sigmas(&self, motion: Pose3, seconds: f64) -> (f64, f64) {
         let drift = self.prior_drift * seconds.sqrt();
-        let grown = |length: f64| (self.prior_part * length.sqrt()).hypot(drift);
+        let grown = |length: f64| (self.prior_part * length.sqrt()).hypotenuse(drift);
         (grown(motion.translation.norm()), grown(motion.angle()))
     }
 

@@ -259,7 +259,8 @@ mod tests {
     fn keyframes_added_meanwhile_move_along_and_slices_change_nothing() {
         let run = |work: usize| {
             let (mut map, ids, off) = bent();
-            let (model, config) = (model(), BundleConfig { covariances: true, ..BundleConfig::default() });
+            let (model, mut config) = (model(), BundleConfig::default());
+            config.covariances = true;
             map.set_covariance(ids[5], nalgebra::Matrix6::identity() * 0.04);
             let mut global = GlobalBundle::of(&map);
             global.advance(&map, &model, (&config, &mut BundleSolver::default()), 1);
@@ -307,7 +308,8 @@ mod tests {
         let pose = along(0.4).inverse() * along(1.0);
         let factor = OdometryFactor { from: ids[4], from_to: UncertainPose { pose, covariance } };
         map.keyframe_mut(after).odometry = Some(factor);
-        let (model, config) = (model(), BundleConfig { covariances: true, ..BundleConfig::default() });
+        let (model, mut config) = (model(), BundleConfig::default());
+        config.covariances = true;
         let mut global = GlobalBundle::of(&map);
         while !global.advance(&map, &model, (&config, &mut BundleSolver::default()), usize::MAX) {}
         global.apply(&mut map);

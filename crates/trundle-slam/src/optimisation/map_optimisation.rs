@@ -7,7 +7,7 @@ use crate::map::landmark_map::LandmarkMap;
 use crate::optimisation::global_bundle::GlobalBundle;
 use crate::optimisation::local_bundle::{BundleSize, apply, bundle_around};
 use crate::optimisation::map_bundle::MapBundle;
-use trundle_optim::{BundleConfig, BundleSolver};
+use trundle_optim::BundleSolver;
 
 /// Largest number of steps of a bundle adjustment of the whole map: 10. It then ends with the present result. Source: \[MurArtal17\].
 const MAX_GLOBAL_STEPS: usize = 10;
@@ -104,7 +104,9 @@ impl MapOptimisation {
             self.is_global_due = false;
         }
         let Some(mut global) = self.global.take() else { return false };
-        let bundle = BundleConfig { steps: MAX_GLOBAL_STEPS, covariances: true, ..config.bundle.clone() };
+        let mut bundle = config.bundle.clone();
+        bundle.steps = MAX_GLOBAL_STEPS;
+        bundle.covariances = true;
         let is_done = global.advance(map, model, (&bundle, &mut self.spare.global), work);
         if is_done {
             global.apply(map);

@@ -4,6 +4,7 @@ use trundle_core::Invalid;
 
 /// Reason why a saved map was not loaded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MapFileError {
     /// The file is not a visual map of this program.
     #[error("this is not a visual map of trundle (visual.map)")]

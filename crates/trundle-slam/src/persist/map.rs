@@ -111,9 +111,9 @@ fn read_covariance(bytes: &mut Reader, name: &str) -> Result<Matrix6<f64>, MapFi
     }
     let min = ((covariance + covariance.transpose()) / 2.0).symmetric_eigenvalues().min();
     let size = covariance.amax();
-    let is_one =
+    let is_semidefinite =
         (covariance - covariance.transpose()).amax() <= MAX_ASYMMETRY * size && min >= -MAX_ASYMMETRY * size;
-    bytes.require(is_one, name, format!("eigenvalue {min:e}"), || {
+    bytes.require(is_semidefinite, name, format!("eigenvalue {min:e}"), || {
         "symmetric, eigenvalues of 0 or more".to_owned()
     })?;
     Ok(covariance)

@@ -8,6 +8,7 @@ use trundle_optim::PoseConfig;
 /// Search for the pose of a frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct TrackingConfig {
     /// Standard deviation of a keypoint of the finest octave, px, 0.01 to 100. A larger value trusts depth and odometry more than pixels.
     /// Default 1 \[MurArtal17\].

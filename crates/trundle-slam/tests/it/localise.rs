@@ -14,7 +14,8 @@ const MAX_SQUARED_ERROR: f64 = 22.46;
 
 /// The SLAM that mapped these images, refined to the end.
 fn mapped(images: &[RgbdImage], seed: u64) -> RgbdSlam {
-    let config = SlamConfig { seed, ..SlamConfig::default() };
+    let mut config = SlamConfig::default();
+    config.seed = seed;
     let mut slam = RgbdSlam::new(camera(), config).unwrap();
     for image in images {
         slam.step(image, None);
@@ -31,7 +32,8 @@ fn map_of_a_corner() -> RgbdSlam {
 
 /// The map of a SLAM, saved and loaded as a fixed map.
 fn fixed(mapped: &RgbdSlam, seed: u64) -> RgbdSlam {
-    let config = SlamConfig { seed, ..SlamConfig::default() };
+    let mut config = SlamConfig::default();
+    config.seed = seed;
     let mut slam = RgbdSlam::load(&mapped.save(), camera(), config).unwrap().starting_at(Pose3::identity());
     slam.set_mode(Mode::Localisation);
     slam

@@ -43,7 +43,8 @@ fn ten_laps_of_a_room_take_no_more_than_three() {
 
 #[test]
 fn only_wanted_poses_of_the_newest_frames_are_kept() {
-    let config = SlamConfig { kept_frames: 7, ..SlamConfig::default() };
+    let mut config = SlamConfig::default();
+    config.kept_frames = 7;
     let mut slam = RgbdSlam::new(camera(), config).unwrap();
     let (room, mut dice) = (Room::new(), Dice(5));
     let mut reported = Vec::new();
@@ -58,7 +59,8 @@ fn only_wanted_poses_of_the_newest_frames_are_kept() {
     slam.forget_frames(|stamp| stamp == reported[15]);
     let kept: Vec<_> = slam.trajectory().into_iter().map(|(stamp, _)| stamp).collect();
     assert_eq!(kept, [reported[15], reported[19]], "that one, and the last");
-    let none = SlamConfig { kept_frames: 0, ..SlamConfig::default() };
+    let mut none = SlamConfig::default();
+    none.kept_frames = 0;
     let error = RgbdSlam::new(camera(), none).unwrap_err().to_string();
     assert_eq!(error, "slam.kept_frames is 0, expected 1 or more");
 }

@@ -5,7 +5,8 @@
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
 use std::path::{Path, PathBuf};
 use trundle_core::{
-    CameraMotion, ColorImage, DepthImage, Distortion, PinholeCamera, Pose2, Pose3, RgbdImage, Stamp, Vector3,
+    CameraMotion, ColorImage, DepthImage, Distortion, Hypotenuse, PinholeCamera, Pose2, Pose3, RgbdImage,
+    Stamp, Vector3,
 };
 
 /// A folder of images: of the simulator (with `camera.toml` and, on wheels, `odometry.txt`), or else of the TUM benchmark's
@@ -79,7 +80,7 @@ impl Drive {
 
 /// Noise of wheels without a gyro, as in `OdometryConfig` of trundle-estimation.
 fn noise(motion: &Pose2) -> Matrix3<f64> {
-    let (distance, turn) = (motion.x.hypot(motion.y), motion.theta.abs());
+    let (distance, turn) = (motion.x.hypotenuse(motion.y), motion.theta.abs());
     let spot = 0.002_f64.powi(2) * turn;
     let heading = 0.05_f64.powi(2) * turn + 0.02_f64.powi(2) * distance;
     Matrix3::from_diagonal(&Vector3::new(

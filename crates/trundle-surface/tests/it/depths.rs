@@ -1,8 +1,8 @@
 //! Depths that do not count, and objects that left.
 
 use crate::scene::{Body, camera, grey, look, look_at, map_of, voxels_of};
-use trundle_core::{ColorImage, DepthImage, Pose3, RgbdImage, Stamp};
-use trundle_surface::{OccupiedVoxels, SurfaceConfig, surface_mesh};
+use trundle_core::{ColorImage, DepthImage, Hypotenuse, Pose3, RgbdImage, Stamp};
+use trundle_surface::{OccupiedVoxels, surface_mesh};
 
 const WALL: Body = Body::Plane { at: [3.0, 0.0, 0.0], normal: [-1.0, 0.0, 0.0] };
 const BALL: Body = Body::Ball { at: [2.0, 0.1, 0.1], radius: 0.3 };
@@ -32,7 +32,9 @@ fn depths_that_do_not_count_change_nothing() {
 
 #[test]
 fn the_bounds_of_the_depth_are_those_of_the_settings() {
-    let config = SurfaceConfig { min_depth: 1.0, max_depth: 2.5, ..voxels_of(0.05) };
+    let mut config = voxels_of(0.05);
+    config.min_depth = 1.0;
+    config.max_depth = 2.5;
     let vertices = |depth: f32| {
         let mut map = map_of(&[], &[], config);
         (0..3).for_each(|_| map.integrate(&flat(depth), &camera(), &ahead()).unwrap());
@@ -43,7 +45,7 @@ fn the_bounds_of_the_depth_are_those_of_the_settings() {
 }
 
 fn near_ball(vertices: &[[f32; 3]]) -> usize {
-    let gap = |at: &&[f32; 3]| (at[0] - 2.0).hypot(at[1] - 0.1).hypot(at[2] - 0.1);
+    let gap = |at: &&[f32; 3]| (at[0] - 2.0).hypotenuse(at[1] - 0.1).hypotenuse(at[2] - 0.1);
     vertices.iter().filter(|at| gap(at) < 0.4).count()
 }
 

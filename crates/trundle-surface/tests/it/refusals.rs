@@ -5,22 +5,27 @@ use nalgebra::{UnitQuaternion, Vector3};
 use trundle_core::{PinholeCamera, Pose3};
 use trundle_surface::{OccupiedVoxels, SurfaceConfig, SurfaceMap, SurfaceMesh, surface_mesh};
 
+/// Field of a setting, and a change of it beyond its range.
+type Wrong = (&'static str, fn(&mut SurfaceConfig));
+
 #[test]
 fn each_setting_out_of_its_range_is_named() {
     let default = SurfaceConfig::default();
-    let wrong = [
-        ("voxel", SurfaceConfig { voxel: 0.003, ..default }),
-        ("voxel", SurfaceConfig { voxel: 0.6, ..default }),
-        ("voxel", SurfaceConfig { voxel: f64::NAN, ..default }),
-        ("truncation_voxels", SurfaceConfig { truncation_voxels: 1.9, ..default }),
-        ("truncation_voxels", SurfaceConfig { truncation_voxels: f64::INFINITY, ..default }),
-        ("min_depth", SurfaceConfig { min_depth: 0.0, ..default }),
-        ("max_depth", SurfaceConfig { max_depth: 0.3, ..default }),
-        ("max_depth", SurfaceConfig { max_depth: 31.0, ..default }),
-        ("min_weight", SurfaceConfig { min_weight: 0, ..default }),
-        ("min_weight", SurfaceConfig { min_weight: 101, ..default }),
+    let wrong: [Wrong; 10] = [
+        ("voxel", |c| c.voxel = 0.003),
+        ("voxel", |c| c.voxel = 0.6),
+        ("voxel", |c| c.voxel = f64::NAN),
+        ("truncation_voxels", |c| c.truncation_voxels = 1.9),
+        ("truncation_voxels", |c| c.truncation_voxels = f64::INFINITY),
+        ("min_depth", |c| c.min_depth = 0.0),
+        ("max_depth", |c| c.max_depth = 0.3),
+        ("max_depth", |c| c.max_depth = 31.0),
+        ("min_weight", |c| c.min_weight = 0),
+        ("min_weight", |c| c.min_weight = 101),
     ];
-    for (field, config) in wrong {
+    for (field, set) in wrong {
+        let mut config = default;
+        set(&mut config);
         assert_eq!(SurfaceMap::new(config).unwrap_err().field, field, "{config:?}");
     }
     assert_eq!(default.validated().unwrap(), default);

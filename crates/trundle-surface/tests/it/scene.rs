@@ -98,7 +98,9 @@ pub fn image(bodies: &[Painted], camera: &PinholeCamera, pose: &Pose3) -> RgbdIm
 
 /// Settings with voxels of `voxel` m.
 pub fn voxels_of(voxel: f64) -> SurfaceConfig {
-    SurfaceConfig { voxel, ..SurfaceConfig::default() }
+    let mut config = SurfaceConfig::default();
+    config.voxel = voxel;
+    config
 }
 
 /// The map of `bodies` from `poses`.

@@ -2,6 +2,7 @@
 
 use super::patch::{ImagePatch, PATCH_RADIUS_PX};
 use nalgebra::{Matrix2, Vector2};
+use trundle_core::Hypotenuse;
 
 /// Number of pixels from the middle of a template to its border: 5. Source: ours.
 const TEMPLATE_RADIUS_PX: usize = 5;
@@ -138,7 +139,7 @@ impl Template {
         let unlike = (contrast - gain * gain * self.contrast).max(0.0);
         let variance = unlike / (count - FITTED_PARAMETERS as f32) / (gain * gain);
         let half = (self.inverse.m11 + self.inverse.m22) / 2.0;
-        let widest = half + ((self.inverse.m11 - self.inverse.m22) / 2.0).hypot(self.inverse.m12);
+        let widest = half + ((self.inverse.m11 - self.inverse.m22) / 2.0).hypotenuse(self.inverse.m12);
         let sigma = (variance * widest).sqrt();
         let is_like = unlike <= MAX_RESIDUAL_RATIO * contrast
             && (1.0 / MAX_CONTRAST_RATIO..=MAX_CONTRAST_RATIO).contains(&gain);

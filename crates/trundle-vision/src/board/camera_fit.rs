@@ -29,7 +29,7 @@ pub struct CameraFit {
     pub sigmas: [f64; PARAMETER_COUNT],
     /// Root mean square of the reprojection error over both axes, px.
     pub residual_px: f64,
-    /// Root mean square of the reprojection error of each view, px, by index into the given views; `None` of a rejected view.
+    /// Root mean square of the reprojection error of each view, px, by index into the given views; `None` for a rejected view.
     pub view_residuals_px: Vec<Option<f64>>,
     /// Views that were left out.
     pub rejected: Vec<RejectedView>,

@@ -4,7 +4,7 @@ use super::board_view::BoardPoint;
 use nalgebra::{DMatrix, Matrix3, SymmetricEigen};
 use trundle_core::Vector2;
 
-/// `pixel ~ H * board` by the direct linear transform on normalised points; `None` of fewer than four points or of points on a line.
+/// `pixel ~ H * board` by the direct linear transform on normalised points; `None` for fewer than four points or of points on a line.
 pub(super) fn homography(points: &[BoardPoint]) -> Option<Matrix3<f64>> {
     if points.len() < 4 {
         return None;

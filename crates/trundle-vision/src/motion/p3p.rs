@@ -61,7 +61,7 @@ impl Triangle {
         let Some((root, lines)) = line_pair(&first, &second) else { return [None; 4] };
         // If one is the other times -root, the larger decides.
         let conic = if root.abs() > 1.0 { first } else { second };
-        let [a, b] = lines.map(|line| meet(&line, &conic));
+        let [a, b] = lines.map(|line| line_conic_intersections(&line, &conic));
         [a[0], a[1], b[0], b[1]].map(|ratios| self.polished(self.sized(ratios?)?))
     }
 
@@ -140,7 +140,7 @@ fn lines_of(conic: &Matrix3<f64>) -> [Vector3; 2] {
 }
 
 /// Intersections of a line with a conic, as points of length one.
-fn meet(line: &Vector3, conic: &Matrix3<f64>) -> [Option<Vector3>; 2] {
+fn line_conic_intersections(line: &Vector3, conic: &Matrix3<f64>) -> [Option<Vector3>; 2] {
     let mut axis = Vector3::zeros();
     axis[line.iamin()] = 1.0;
     let u = line.cross(&axis).normalize();

@@ -4,7 +4,7 @@ use super::consensus::Consensus;
 use super::ransac_config::RansacConfig;
 use super::residual::Observation;
 use super::rigid::rigid_motion;
-use trundle_core::{PinholeCamera, Pose3, Vector3};
+use trundle_core::{Hypotenuse, PinholeCamera, Pose3, Vector3};
 
 /// Chi-square with three degrees of freedom at 95 %. Source: the chi-square distribution.
 const CHI2_95_3: f64 = 7.815;
@@ -73,7 +73,7 @@ impl Pair {
     ) -> Option<Self> {
         let finite = a.iter().chain(b.iter()).all(|v| v.is_finite());
         (finite && a.z > 0.0 && b.z > 0.0).then_some(())?;
-        let depth_sigma = config.sigma_of_depth(a.z).hypot(config.sigma_of_depth(b.z));
+        let depth_sigma = config.sigma_of_depth(a.z).hypotenuse(config.sigma_of_depth(b.z));
         let observation = Observation {
             point: a,
             pixel: camera.project(b)?,

@@ -6,6 +6,7 @@ use trundle_core::{Invalid, require_in, require_positive};
 /// How [`estimate_rigid_motion`](crate::estimate_rigid_motion) separates right pairs from wrong ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RansacConfig {
     /// Chance to have drawn a sample of right pairs only at which the search ends, above 0, below 1. Default 0.999.
     pub confidence: f64,

@@ -11,6 +11,7 @@ const CHI2_95_2: f64 = 5.991;
 /// How [`refine_pose_by_reprojection`] iterates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RefineConfig {
     /// Steps at most, 1 or more. Default 10 \[MurArtal17\].
     pub steps: usize,

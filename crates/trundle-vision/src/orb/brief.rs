@@ -121,6 +121,7 @@ const fn split_mix(state: u64) -> (u64, u64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trundle_core::Hypotenuse;
 
     fn turned_by(degrees: f32) -> Direction {
         let angle = degrees.to_radians();
@@ -135,7 +136,9 @@ mod tests {
         assert!(mean.abs() < 0.6, "{mean}");
         assert!((variance.sqrt() - TEST_SIGMA_PX).abs() < 0.9, "{}", variance.sqrt());
         for points in &PATTERN {
-            assert!(points.x.iter().zip(&points.y).all(|(x, y)| x.hypot(*y) < MAX_TEST_RADIUS_PX + 1e-3));
+            assert!(
+                points.x.iter().zip(&points.y).all(|(x, y)| x.hypotenuse(*y) < MAX_TEST_RADIUS_PX + 1e-3)
+            );
         }
     }
 

@@ -6,6 +6,7 @@ use trundle_core::{Invalid, require_in};
 /// Settings of [`OrbExtractor`](crate::OrbExtractor).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct OrbConfig {
     /// Maximum number of features per image, 1 to 100000. More track better and take longer. Default 1000 \[MurArtal17\].
     pub features: usize,

@@ -2,6 +2,7 @@
 
 use super::patch::{DISC_RADIUS_PX, PATCH_STRIDE, Patch};
 use std::num::Wrapping;
+use trundle_core::angle_of_f32;
 
 /// Direction of a patch: from its middle to its centre of mass \[Rosin99\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +21,7 @@ pub(crate) fn direction(patch: &Patch) -> Direction {
     if length == 0.0 {
         return Direction { angle: 0.0, cos: 1.0, sin: 0.0 };
     }
-    Direction { angle: y.atan2(x), cos: x / length, sin: y / length }
+    Direction { angle: angle_of_f32(x, y), cos: x / length, sin: y / length }
 }
 
 fn moments(patch: &Patch) -> (i32, i32) {

@@ -1,7 +1,7 @@
 //! Texture around a corner: whether it fixes the corner's position.
 
 use super::corner::Corner;
-use trundle_core::GrayImage;
+use trundle_core::{GrayImage, Hypotenuse};
 
 /// Radius of the area in which a corner's texture is measured: 7 px. Source: ours.
 const TEXTURE_RADIUS_PX: usize = 7;
@@ -23,7 +23,7 @@ const COUNT_WEIGHTS: [i16; TEXTURE_STRIDE] = {
 pub(crate) fn min_gradient(image: &GrayImage, corner: Corner) -> f32 {
     let [across, down, both] = tensor(image, corner).map(f64::from);
     let middle = (across + down) / 2.0;
-    let min = (middle - ((across - down) / 2.0).hypot(both)).max(0.0);
+    let min = (middle - ((across - down) / 2.0).hypotenuse(both)).max(0.0);
     // The differences are over two pixels.
     (min / (4 * TEXTURE_SIDE_PX * TEXTURE_SIDE_PX) as f64).sqrt() as f32
 }

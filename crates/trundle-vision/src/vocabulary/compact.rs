@@ -14,6 +14,7 @@ const HEAD_BYTES: usize = 8 + 4 * 4 + 8;
 
 /// Reason why a vocabulary could not be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum VocabularyError {
     /// A line of a text is invalid.
     #[error("line {number}: {problem}")]

@@ -14,6 +14,7 @@ use trundle_core::{Invalid, require_in};
 /// The shape of a vocabulary to train.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct VocabularyConfig {
     /// Children of a node, 2 to 64. Default 10 \[GalvezLopez12\].
     pub branching: usize,
@@ -31,6 +32,11 @@ impl Default for VocabularyConfig {
 }
 
 impl VocabularyConfig {
+    /// The shape with this number of children of a node and of levels below the root.
+    pub fn of_tree(branching: usize, depth: usize) -> Self {
+        Self { branching, depth, ..Self::default() }
+    }
+
     /// Returns a valid configuration unchanged.
     ///
     /// # Errors

@@ -13,7 +13,9 @@ const OCTAVES: usize = 8;
 const SCALE: f64 = 1.2;
 
 fn extracted(image: &GrayImage) -> Features {
-    OrbExtractor::new(OrbConfig { features: 2000, ..Default::default() }).unwrap().extract(image)
+    let mut config = OrbConfig::default();
+    config.features = 2000;
+    OrbExtractor::new(config).unwrap().extract(image)
 }
 
 fn position(k: &Keypoint) -> Vector2 {

@@ -5,7 +5,9 @@ use trundle_core::GrayImage;
 use trundle_vision::{Features, OrbConfig, OrbExtractor};
 
 fn extracted(image: &GrayImage, features: usize) -> Features {
-    OrbExtractor::new(OrbConfig { features, ..Default::default() }).unwrap().extract(image)
+    let mut config = OrbConfig::default();
+    config.features = features;
+    OrbExtractor::new(config).unwrap().extract(image)
 }
 
 #[test]

@@ -63,6 +63,7 @@ fn run_report() -> RunReport {
         figures: Vec::new(),
         charts: charts::all(&estimate, &truth),
         tables: tables(),
+        ..RunReport::default()
     }
 }
 

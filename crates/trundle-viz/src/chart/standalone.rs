@@ -1,4 +1,4 @@
-//! A chart as a file of its own.
+//! A chart as a separate file.
 
 /// Rules of the report's style sheet for charts, in its light colours.
 const STYLE: &str = "svg{font-family:system-ui,sans-serif;fill:#1f242b}.rule{stroke:#dfe3e8;fill:none}.axis{stroke:#5c6570;fill:none}\

@@ -21,6 +21,8 @@ pub struct RunReport {
     pub title: String,
     /// One or two sentences: what was run, on what.
     pub subtitle: String,
+    /// Links to other files of the folder: text and name of the file.
+    pub links: Vec<(String, String)>,
     /// The verdict.
     pub verdict: Option<Verdict>,
     /// Key numbers.
@@ -37,12 +39,15 @@ pub struct RunReport {
     pub charts: Vec<Figure>,
     /// Tables.
     pub tables: Vec<Table>,
+    /// The states of the robot, in order.
+    pub states: Option<Table>,
 }
 
 impl RunReport {
-    /// The page: verdict and key numbers, the map, the camera's view, charts, the goal from near and tables.
+    /// The page: verdict and key numbers, the map, the camera's view, charts, the goal from near, tables and states.
     pub fn to_html(&self) -> String {
         let mut report = Report::new(&self.title).subtitle(&self.subtitle);
+        report = self.links.iter().fold(report, |report, (text, file)| report.link(text, file));
         if let Some(verdict) = &self.verdict {
             report = report.verdict(verdict.clone());
         }
@@ -56,7 +61,11 @@ impl RunReport {
             report = report.section("Numbers", "");
         }
         report = goal.into_iter().fold(report, Report::figure);
-        self.tables.iter().cloned().fold(report, Report::table).to_html()
+        report = self.tables.iter().cloned().fold(report, Report::table);
+        match &self.states {
+            Some(states) => report.section("States", "").table(states.clone()).to_html(),
+            None => report.to_html(),
+        }
     }
 
     fn camera_figures(&self) -> Vec<Figure> {
@@ -106,10 +115,13 @@ mod tests {
             camera: Some(CameraView::default()),
             depth: Some(DepthImage::default()),
             tables: vec![Table::new("numbers", ["a"])],
+            links: vec![("Durations".into(), "timing.html".into())],
+            states: Some(Table::new("changes", ["a"]).folded()),
             ..RunReport::default()
         };
         let html = run.to_html();
         assert_eq!(html.matches("<img").count(), 4);
+        assert!(html.contains("./timing.html") && html.contains("<h2>States</h2>"));
         assert_eq!(html, run.to_html());
     }
 }

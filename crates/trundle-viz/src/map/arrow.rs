@@ -6,7 +6,7 @@ use super::view::View;
 use crate::canvas::{Canvas, Pen};
 use crate::clip::Px;
 use crate::color::Color;
-use trundle_core::Vector2;
+use trundle_core::{Hypotenuse, Vector2};
 
 /// Length of a head in line widths, and half its breadth. Source: ours.
 const HEAD_SIZE_LINE_WIDTHS: (f64, f64) = (4.6, 2.3);
@@ -36,7 +36,7 @@ fn head(canvas: &mut Canvas, tip: Px, (x, y): Px, length: f64, color: Color) {
 }
 
 fn distance(a: Px, b: Px) -> f64 {
-    (a.0 - b.0).hypot(a.1 - b.1)
+    (a.0 - b.0).hypotenuse(a.1 - b.1)
 }
 
 /// A line from a place to its moved note.

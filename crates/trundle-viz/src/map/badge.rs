@@ -6,7 +6,7 @@ use crate::canvas::Canvas;
 use crate::clip::Px;
 use crate::color::Color;
 use crate::text::{TextStyle, cap_height, text_width};
-use trundle_core::Vector2;
+use trundle_core::{Hypotenuse, Vector2};
 
 /// Space around a text within its badge, in dots of the typeface. Source: ours.
 const PADDING_DOTS: f64 = 2.5;
@@ -44,7 +44,8 @@ pub(crate) fn draw_badge(canvas: &mut Canvas, center: Px, radius: f64, text: &st
 
 /// The circle about a text, px.
 pub(crate) fn radius_of(text: &str, scale: i64) -> f64 {
-    (text_width(text, scale) as f64).hypot(cap_height(scale) as f64) / 2.0 + PADDING_DOTS * scale as f64 / 2.0
+    (text_width(text, scale) as f64).hypotenuse(cap_height(scale) as f64) / 2.0
+        + PADDING_DOTS * scale as f64 / 2.0
 }
 
 /// Centres of the circles for `places`: at the place, or at the nearest position without overlap, within a picture of `size`.
@@ -55,7 +56,7 @@ fn spread(places: &[Px], radius: f64, size: Px) -> Vec<Px> {
             let inside = |at: f64, size: f64| at >= radius && at <= size - radius;
             inside(p.0, size.0)
                 && inside(p.1, size.1)
-                && placed.iter().all(|q| (p.0 - q.0).hypot(p.1 - q.1) > 2.0 * radius + 1.0)
+                && placed.iter().all(|q| (p.0 - q.0).hypotenuse(p.1 - q.1) > 2.0 * radius + 1.0)
         };
         let beside = (1..=2 * MAX_SHIFT_DIAMETERS).flat_map(|step| {
             let distance = f64::from(step) * radius;
@@ -82,7 +83,7 @@ mod tests {
         for (i, p) in placed.iter().enumerate() {
             assert!(p.0 >= 8.0 && p.1 >= 8.0, "{p:?}");
             for q in &placed[..i] {
-                assert!((p.0 - q.0).hypot(p.1 - q.1) > 16.0, "{p:?} {q:?}");
+                assert!((p.0 - q.0).hypotenuse(p.1 - q.1) > 16.0, "{p:?} {q:?}");
             }
         }
         assert_eq!(spread(&[(100.0, 100.0)], 8.0, (300.0, 300.0)), [(100.0, 100.0)]);

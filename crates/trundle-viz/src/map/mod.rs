@@ -54,6 +54,7 @@ pub struct MapPicture<'a> {
     layers: Vec<Layer>,
     window: Option<Bounds>,
     axes: [String; 2],
+    cell_names: [String; 3],
     legend: bool,
     lettering: f64,
 }
@@ -67,7 +68,8 @@ impl<'a> MapPicture<'a> {
     /// A picture without a map: overlays on squared paper.
     pub fn blank() -> Self {
         let axes = ["x, m".to_owned(), "y, m".to_owned()];
-        Self { grid: None, layers: Vec::new(), window: None, axes, legend: true, lettering: 1.0 }
+        let cell_names = ["free", "occupied", "unknown"].map(str::to_owned);
+        Self { grid: None, layers: Vec::new(), window: None, axes, cell_names, legend: true, lettering: 1.0 }
     }
 
     /// Adds straight pieces between points.
@@ -141,6 +143,11 @@ impl<'a> MapPicture<'a> {
         Self { axes: [right.to_owned(), up.to_owned()], ..self }
     }
 
+    /// Names free, occupied and unknown cells in the legend.
+    pub fn cell_names(self, names: [&str; 3]) -> Self {
+        Self { cell_names: names.map(str::to_owned), ..self }
+    }
+
     /// Makes text and lines `factor` times as large as usual, for a picture that will be shown small.
     pub fn lettering(self, factor: f64) -> Self {
         Self { lettering: factor, ..self }
@@ -159,14 +166,15 @@ impl<'a> MapPicture<'a> {
                 items.push(item);
             }
         }
+        let [free, occupied, unknown] = &self.cell_names;
         let kinds = [
-            (Cell::Free, "free", Color::FREE),
-            (Cell::Occupied, "occupied", Color::OCCUPIED),
-            (Cell::Unknown, "unknown", Color::UNKNOWN),
+            (Cell::Free, free, Color::FREE),
+            (Cell::Occupied, occupied, Color::OCCUPIED),
+            (Cell::Unknown, unknown, Color::UNKNOWN),
         ];
         let cells = self.grid.map_or(&[][..], OccupancyGrid::cells);
         let present = kinds.into_iter().filter(|(kind, ..)| cells.contains(kind));
-        items.extend(present.map(|(_, label, color)| LegendItem::new(label, color, Mark::Cell)));
+        items.extend(present.map(|(_, label, color)| LegendItem::new(label.as_str(), color, Mark::Cell)));
         items
     }
 

@@ -31,6 +31,7 @@ use block::Section;
 pub struct Report {
     title: String,
     subtitle: String,
+    links: Vec<(String, String)>,
     verdict: Option<Verdict>,
     cards: Vec<Card>,
     sections: Vec<Section>,
@@ -40,12 +41,18 @@ impl Report {
     /// An empty report.
     pub fn new(title: &str) -> Self {
         let (title, subtitle) = (title.to_owned(), String::new());
-        Self { title, subtitle, verdict: None, cards: Vec::new(), sections: Vec::new() }
+        Self { title, subtitle, links: Vec::new(), verdict: None, cards: Vec::new(), sections: Vec::new() }
     }
 
     /// One or two sentences below the title: the command and its input.
     pub fn subtitle(self, subtitle: &str) -> Self {
         Self { subtitle: subtitle.to_owned(), ..self }
+    }
+
+    /// Adds a link to another file of the page's folder, below the subtitle.
+    pub fn link(mut self, text: &str, file: &str) -> Self {
+        self.links.push((text.to_owned(), file.to_owned()));
+        self
     }
 
     /// The banner with the outcome.
@@ -96,6 +103,10 @@ impl Report {
         } else {
             format!("<p class=\"subtitle\">{}</p>", escape(&self.subtitle))
         };
+        let link =
+            |(text, file): &(String, String)| format!("<a href=\"./{}\">{}</a>", escape(file), escape(text));
+        let links: String = self.links.iter().map(link).collect();
+        let links = if links.is_empty() { links } else { format!("<nav>{links}</nav>") };
         let verdict = self.verdict.as_ref().map(Verdict::to_html).unwrap_or_default();
         let cards: String = self.cards.iter().map(Card::to_html).collect();
         let cards = if cards.is_empty() { cards } else { format!("<div class=\"cards\">{cards}</div>") };
@@ -105,7 +116,7 @@ impl Report {
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
              <title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n\
-             <header><h1>{title}</h1>{subtitle}{verdict}{cards}</header>\n<main>\n{sections}</main>\n\
+             <header><h1>{title}</h1>{subtitle}{links}{verdict}{cards}</header>\n<main>\n{sections}</main>\n\
              <footer>Made by trundle. Lengths in metres unless said otherwise; click a figure to enlarge it.</footer>\n\
              </body>\n</html>\n",
             style = include_str!("style.css"),

@@ -10,6 +10,7 @@ fn page(text: &str) -> String {
         Chart::new(text, text, text).line(text, Color::BLUE, vec![(0.0, 1.0), (1.0, 2.0)]).limit(text, 1.5);
     Report::new(text)
         .subtitle(text)
+        .link(text, text)
         .verdict(Verdict::Failed(text.to_owned()))
         .card(Card::new(text, text).unit(text).remark(text).good(false))
         .section(text, text)
@@ -21,6 +22,7 @@ fn page(text: &str) -> String {
         .figure(Figure::bars(&BarChart::new(text, text, text, text).row(text, 1.0, 2.0)))
         .figure(Figure::png(text, b"junk"))
         .table(Table::new(text, [text, text]).row([text, text]))
+        .table(Table::new(text, [text, text]).row([text, text]).folded())
         .to_html()
 }
 
@@ -47,4 +49,13 @@ fn the_page_fetches_nothing_and_is_the_same_each_time() {
 fn blocks_without_a_section_are_kept() {
     let html = Report::new("r").table(Table::new("alone", ["a"])).to_html();
     assert!(html.contains("alone") && !html.contains("<h2>"));
+}
+
+#[test]
+fn a_link_leads_to_a_file_beside_the_page() {
+    let html = Report::new("r").link("Times", "timing.html").to_html();
+    assert!(html.contains("<nav><a href=\"./timing.html\">Times</a></nav>"), "{html}");
+    let script = Report::new("r").link("x", "javascript:alert(1)").to_html();
+    assert!(script.contains("href=\"./javascript:alert(1)\""), "a path, not a scheme");
+    assert!(!Report::new("r").to_html().contains("<nav>"));
 }

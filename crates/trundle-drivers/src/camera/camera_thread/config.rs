@@ -2,6 +2,7 @@
 
 use super::StampMapFactory;
 use crate::camera::{CameraError, DepthCamera};
+use nalgebra::UnitQuaternion;
 use std::sync::Arc;
 use trundle_core::{Invalid, PinholeCamera, SensorEvent, Stamp, require_in};
 
@@ -26,6 +27,7 @@ pub struct CameraThreadParts {
 
 /// Settings of a camera thread.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct CameraThreadConfig {
     /// Silence after which the camera counts as lost \[s\], 0.1 to 60. Default 1. Source: ours; 30 frames at 30 Hz, and the base stops a
     /// robot whose commands fail for that long.
@@ -38,6 +40,9 @@ pub struct CameraThreadConfig {
     pub expects_noise: bool,
     /// The camera that the robot works with, at the place of the colour camera. Default `None`: the colour camera itself.
     pub output: Option<PinholeCamera>,
+    /// Rotation of the colour camera on the base, optical frame, by which the samples of the camera's gyro become turns of the base. Default
+    /// `None`: the samples are not used, as by a base with a gyro of its own.
+    pub gyro: Option<UnitQuaternion<f64>>,
 }
 
 impl Default for CameraThreadConfig {
@@ -48,6 +53,7 @@ impl Default for CameraThreadConfig {
             max_reopen_wait_s: 5.0,
             expects_noise: true,
             output: None,
+            gyro: None,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The thread that reads the camera, and reopens a lost one.
 
+use super::base_gyro::BaseGyro;
 use super::config::{CameraFactory, CameraThreadConfig, HostClock};
 use super::mailbox::{GrabbedFrame, Mailbox};
 use super::outbox::Outbox;
@@ -44,6 +45,7 @@ struct OpenCamera {
     info: Arc<CameraInfo>,
     monitor: FrameMonitor,
     stamps: StampMap,
+    gyro: Option<BaseGyro>,
     generation: u64,
     /// Arrival of the newest good frame on the host's clock.
     last_good: Stamp,
@@ -97,6 +99,9 @@ impl Grabber {
                 Err(error @ CameraError::BrokenFrame(_)) => self.outbox.on_broken(error.to_string()),
                 Err(error) => return Outcome::Lost(error.to_string()),
             }
+            if let Some(gyro) = &mut open.gyro {
+                self.outbox.push_gyro(gyro.take(&mut *open.camera, (self.clock)()));
+            }
             if let Some(fault) = self.silence(&open) {
                 return Outcome::Lost(fault);
             }
@@ -110,7 +115,12 @@ impl Grabber {
         let monitor =
             FrameMonitor::new(&info, self.config.expects_noise && info.is_live).following(self.last_stamps);
         let (stamps, generation) = ((self.stamps)(&info), self.outbox.generation());
-        OpenCamera { camera, info, monitor, stamps, generation, last_good: (self.clock)() }
+        let gyro = self.config.gyro.map(|rotation| {
+            // Samples arrive without the exposure and the readout of an image: a filter of their own maps their stamps.
+            let at_once = CameraInfo { delay_s: 0.0, ..camera.info().clone() };
+            BaseGyro::new(&info, rotation, (self.stamps)(&at_once))
+        });
+        OpenCamera { camera, info, monitor, stamps, gyro, generation, last_good: (self.clock)() }
     }
 
     /// Hands a frame on; a fault that ends the use of the camera.

@@ -4,6 +4,7 @@
 //! registers the newest frame, and pushes it into the sink. A newer frame replaces a waiting one, which keeps the delay below two frames;
 //! the frames of a recording wait instead.
 
+mod base_gyro;
 mod config;
 mod converter;
 mod grabber;

@@ -3,7 +3,7 @@
 use super::config::{EventSink, HostClock};
 use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use trundle_core::{BodyEvent, BodyEventKind, Device, Link, RgbdImage, SensorEvent};
+use trundle_core::{BodyEvent, BodyEventKind, Device, GyroRate, Link, RgbdImage, SensorEvent};
 
 /// Frames counted since the start of a camera thread.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub struct CameraCounters {
     pub dropped: u64,
     /// Frames that could not be read or converted.
     pub broken: u64,
-    /// Times that the camera delivered the same frame again and again.
+    /// Number of times that the camera delivered the same frame repeatedly.
     pub stuck: u64,
     /// Times that the camera was lost, or could not be opened.
     pub lost: u64,
@@ -56,6 +56,14 @@ impl Outbox {
         state.counters.frames += 1;
         state.broken_in_row = 0;
         (state.sink)(SensorEvent::Rgbd(image));
+    }
+
+    /// Pushes readings of the camera's gyro.
+    pub(super) fn push_gyro(&self, rates: Vec<GyroRate>) {
+        if !rates.is_empty() {
+            let mut state = self.lock();
+            rates.into_iter().for_each(|rate| (state.sink)(SensorEvent::Gyro(rate)));
+        }
     }
 
     /// The camera was lost, or could not be opened.
@@ -121,7 +129,7 @@ impl Outbox {
     fn push_link(&self, state: &mut State, is_up: bool) {
         state.is_up = Some(is_up);
         let kind = BodyEventKind::Link(Link { device: Device::Camera, is_up });
-        (state.sink)(SensorEvent::Body(BodyEvent { stamp: (self.clock)(), kind }));
+        (state.sink)(SensorEvent::Body(BodyEvent::new((self.clock)(), kind)));
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {

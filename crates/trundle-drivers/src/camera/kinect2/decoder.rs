@@ -25,6 +25,7 @@ pub struct Kinect2Calibration {
 
 /// Settings of the decoder.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct DecoderConfig {
     /// Lowest amplitude of a valid pixel at each frequency \[1\], 1 to 10,000. Default 30. Source: ours; five times the noise of a
     /// measurement in the test's model.

@@ -13,7 +13,7 @@ const LANES: usize = 8;
 const MIN_POWER: f32 = 1e-6;
 /// Weights of the neighbours in columns and rows, by a Gaussian of 1 px: exp(-1/2) next to the middle. Source: ours.
 const SPATIAL_WEIGHTS: [f32; 3] = [0.606_53, 1.0, 0.606_53];
-/// Difference of phasors, relative to the amplitude, from which a neighbour gets no weight \[1\]: 0.6. Source: ours; noise reaches 0.2 at the
+/// Difference of phasors, relative to the amplitude, above which a neighbour gets no weight \[1\]: 0.6. Source: ours; noise reaches 0.2 at the
 /// lowest accepted amplitude, and 0.6 is a step of 0.12 m at 120 MHz.
 const MAX_RELATIVE_DIFFERENCE: f32 = 0.6;
 

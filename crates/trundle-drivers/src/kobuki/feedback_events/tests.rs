@@ -101,7 +101,8 @@ fn the_battery_is_reported_at_once_by_charger_and_once_a_second_by_voltage() {
         let charger = Charger { source, is_charging };
         let state = CoreSensors { charger, battery_decivolts: 140 + (i % 2) as u8, ..core(i * 20) };
         for event in changes(&events.events(&packet(state), at(i64::from(i) * 20))) {
-            let SensorEvent::Body(BodyEvent { stamp, kind: BodyEventKind::Battery(battery) }) = event else {
+            let SensorEvent::Body(BodyEvent { stamp, kind: BodyEventKind::Battery(battery), .. }) = event
+            else {
                 panic!("{event:?}");
             };
             reports.push(((stamp - at(0)) * 1000.0, battery.voltage_v, battery.is_charging));

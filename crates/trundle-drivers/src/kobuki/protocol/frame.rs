@@ -13,6 +13,7 @@ pub const FRAME_OVERHEAD_BYTES: usize = 4;
 
 /// A refused payload.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum PayloadError {
     /// A sub-payload reaches beyond the end of the payload.
     #[error(

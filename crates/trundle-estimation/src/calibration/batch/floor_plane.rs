@@ -11,7 +11,7 @@ use super::planar_track::tilt_of;
 use nalgebra::Matrix3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use trundle_core::{DepthImage, PinholeCamera, Vector3};
+use trundle_core::{DepthImage, Hypotenuse, PinholeCamera, Vector3};
 
 /// The floor in the camera's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -208,7 +208,7 @@ impl FloorMount {
     pub fn of(views: &[FloorView], axis: Option<&Vector3>) -> Option<Self> {
         let mean = |value: &dyn Fn(&FloorView) -> f64, shared: &dyn Fn(f64) -> f64| {
             let mean = Estimate::mean_of(&views.iter().map(value).collect::<Vec<f64>>())?;
-            Some(Estimate::new(mean.value, mean.sigma.hypot(shared(mean.value))))
+            Some(Estimate::new(mean.value, mean.sigma.hypotenuse(shared(mean.value))))
         };
         let tilt = |of: &dyn Fn((f64, f64)) -> f64| {
             mean(&|view| of(tilt_of(view.up)), &|mean| match axis {

@@ -14,8 +14,8 @@ use nalgebra::{Rotation3, Vector6};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{
-    DepthImage, DifferentialDrive, GyroRate, PinholeCamera, Pose2, Pose3, Stamp, Twist2, Vector2, Vector3,
-    WheelTicks,
+    DepthImage, DifferentialDrive, GyroRate, Hypotenuse, PinholeCamera, Pose2, Pose3, Stamp, Twist2, Vector2,
+    Vector3, WheelTicks,
 };
 
 /// The truth of a synthetic robot.
@@ -200,8 +200,8 @@ fn a_turn_on_the_spot_shows_the_distance_of_the_camera_but_not_its_bearing() {
     let truth = Truth { delay: 0.0, left_radius: 0.035, right_radius: 0.035, ..Truth::default() };
     let found = fit(&truth, &[(1.0, 0.0, 0.0), (16.0, 0.0, 0.8), (16.0, 0.0, -0.8)]).unwrap();
     assert!(found.yaw.sigma > 0.05 && found.offset_y.sigma > 0.01, "{found:?}");
-    let distance = found.offset_x.value.hypot(found.offset_y.value);
-    assert!((distance - 0.12_f64.hypot(0.03)).abs() < 0.002, "{found:?}");
+    let distance = found.offset_x.value.hypotenuse(found.offset_y.value);
+    assert!((distance - 0.12_f64.hypotenuse(0.03)).abs() < 0.002, "{found:?}");
 }
 
 #[test]

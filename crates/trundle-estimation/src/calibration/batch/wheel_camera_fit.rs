@@ -19,7 +19,7 @@ use super::planar_track::planar_track;
 use super::segments::{Segment, segments};
 use super::wheel_angles::{WheelAngles, WheelTurn};
 use nalgebra::{Matrix2x4, Vector2, Vector4};
-use trundle_core::{DifferentialDrive, Pose3, Stamp, Vector3};
+use trundle_core::{DifferentialDrive, Hypotenuse, Pose3, Stamp, Vector3};
 
 /// Wheels and mount of the camera, estimated from one drive. A number that the drive does not determine equals the number in use, with the
 /// standard deviation of the prior.
@@ -126,7 +126,7 @@ fn fit_displacement(
 /// Physical numbers from both linear solutions; covariances to first order.
 fn assembled(turn: &LinearSolution<2>, shift: &LinearSolution<4>) -> WheelCameraFit {
     let (p, q) = (shift.x[0], shift.x[1]);
-    let (wheelbase, yaw) = (p.hypot(q), (-q).atan2(p));
+    let (wheelbase, yaw) = (p.hypotenuse(q), (-q).atan2(p));
     let along = Vector4::new(p, q, 0.0, 0.0) / wheelbase;
     let across = Vector4::new(q, -p, 0.0, 0.0) / (wheelbase * wheelbase);
     let base_variance = along.dot(&(shift.covariance * along));

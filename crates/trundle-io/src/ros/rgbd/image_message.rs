@@ -34,7 +34,7 @@ pub(super) enum ImageKind {
 }
 
 impl BagImage {
-    /// The image of a message of type `kind`; `None` of another type.
+    /// The image of a message of type `kind`; `None` for another type.
     pub(super) fn read(kind: &str, bytes: &[u8], wire: Wire) -> Option<Result<Self, CdrError>> {
         match kind {
             types::IMAGE => Some(Self::read_raw(bytes, wire)),

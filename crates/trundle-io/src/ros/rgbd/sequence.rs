@@ -12,6 +12,7 @@ use trundle_core::{PinholeCamera, Pose2, Pose3, Stamp};
 
 /// The requested topics; for `None` the bag's content decides.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct RosSequenceOptions {
     /// Topic of colour images.
     pub color_topic: Option<String>,
@@ -39,9 +40,9 @@ pub struct RosSequence {
 
 /// Frames on the floor below the base; the first existing one is used. Source: REP 105, REP 120.
 const BASE_FRAMES: [&str; 2] = ["base_footprint", "base_link"];
-/// Distance of the depth camera from the colour camera \[m\], from which depth is not registered to colour. Source: ours.
+/// Smallest distance of the depth camera from the colour camera at which depth is not registered to colour \[m\]. Source: ours.
 const MAX_DEPTH_OFFSET_M: f64 = 1e-3;
-/// Turn between both cameras \[rad\] from which depth is not registered to colour. Source: ours.
+/// Smallest turn between both cameras at which depth is not registered to colour \[rad\]. Source: ours.
 const MAX_DEPTH_TURN_RAD: f64 = 1e-3;
 
 impl RosSequence {

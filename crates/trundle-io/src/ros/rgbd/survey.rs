@@ -61,6 +61,9 @@ impl Survey {
         for cut in bag.cuts {
             survey.warnings.add("the bag breaks off and is read up to there", &cut);
         }
+        for parts in bag.skipped {
+            survey.warnings.add("the bag is damaged", &parts);
+        }
         Ok(survey)
     }
 

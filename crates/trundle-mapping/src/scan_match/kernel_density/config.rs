@@ -6,6 +6,7 @@ use trundle_core::{Invalid, require_in};
 /// Alignment of a scan with the map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ScanMatchConfig {
     /// Largest error of the guess along x and along y, m, 0 to 1. A larger window corrects larger errors, takes longer, and is less safe
     /// among similar walls. Default 0.15 (ours).
@@ -25,8 +26,8 @@ pub struct ScanMatchConfig {
     pub spacing: f64,
     /// Smallest number of hits on known ground, 3 to 10000. With fewer the scan is not matched. Default 30 (ours).
     pub min_points: usize,
-    /// Smallest fraction of the hits on known ground that the map explains, 0 to 1. Below it the match is refused. Default 0.6; a perfect
-    /// fit has 0.9.
+    /// Smallest fraction of the hits on known ground that the map explains, 0 to 1. Below it the match is refused. Default 0.6 (ours): two
+    /// thirds of a perfect fit, which has 0.9.
     pub min_score: f64,
     /// Fraction of the hits' information below which a direction is degenerate, 0 to 1. A degenerate direction keeps the guess. Default
     /// 0.05 (ours).

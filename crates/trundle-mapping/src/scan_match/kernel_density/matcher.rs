@@ -3,10 +3,10 @@
 use super::{
     ScanMatchConfig,
     information::Information,
+    matched_map::MatchedMap,
     refinement::{MIN_LEVER_M, refine},
     window_search::search,
 };
-use crate::grid_mapper::GridMapper;
 use crate::scan_match::point_spread::{PointSpread, thinned};
 use nalgebra::Matrix3;
 use trundle_core::{Invalid, Pose2, Scan, Vector2};
@@ -52,9 +52,10 @@ impl ScanMatcher {
         Ok(Self { config: config.validated()? })
     }
 
-    /// The pose near `guess` (`map_from_base`) at which `scan` fits the map. `None` if too few hits are on known ground, the map explains
+    /// The pose near `guess` (`map_from_base`) at which `scan` fits the map (a [`GridMapper`](crate::GridMapper) as `&mapper`). `None` if too few hits are on known ground, the map explains
     /// too few of them, or the fit leaves the window.
-    pub fn refine(&self, mapper: &GridMapper, scan: &Scan, guess: Pose2) -> Option<ScanMatch> {
+    pub fn refine<'m>(&self, map: impl Into<MatchedMap<'m>>, scan: &Scan, guess: Pose2) -> Option<ScanMatch> {
+        let map = map.into();
         if !guess.is_finite() {
             return None;
         }
@@ -64,7 +65,7 @@ impl ScanMatcher {
         if points.len() < config.min_points {
             return None;
         }
-        let surface_points = self.surface_points(mapper, &points, guess)?;
+        let surface_points = self.surface_points(&map, &points, guess)?;
         let start =
             search(config, &LikelihoodField::new(&surface_points, config.search_sigma), &points, guess);
         let (end, equations) = refine(config, &surface_points, &points, start);
@@ -73,7 +74,9 @@ impl ScanMatcher {
         let information = Information::new(config, &equations, &spread);
         let displacement = information.held(&(guess.inverse() * end).log());
         let pose = guess * Pose2::exp(displacement);
-        let known = points.iter().filter(|&&p| mapper.log_odds_at(pose.transform(p)) != 0.0).count();
+        let reach = config.window + 3.0 * config.search_sigma;
+        let is_known = |&&p: &&Vector2| map.is_known(pose.transform(p), &surface_points, reach);
+        let known = points.iter().filter(is_known).count();
         let score = (equations.explained / known.max(1) as f64).min(1.0);
         let (shift, turn) = (displacement.xy().norm(), displacement.z.abs());
         let in_window = shift <= 2.0 * config.window && turn <= 1.5 * config.window_deg.to_radians();
@@ -85,13 +88,17 @@ impl ScanMatcher {
         })
     }
 
-    fn surface_points(&self, mapper: &GridMapper, points: &[Vector2], guess: Pose2) -> Option<SurfacePoints> {
+    fn surface_points(
+        &self,
+        map: &MatchedMap<'_>,
+        points: &[Vector2],
+        guess: Pose2,
+    ) -> Option<SurfacePoints> {
         let config = &self.config;
         let there: Vec<Vector2> = points.iter().map(|&p| guess.transform(p)).collect();
         let farthest = points.iter().map(Vector2::norm).fold(0.0, f64::max);
         let swing = farthest * config.window_deg.to_radians();
         let margin = 2.0 * config.window + 1.5 * swing + 3.0 * config.search_sigma;
-        let resolution = mapper.config().resolution;
-        SurfacePoints::around(mapper.evidence(), mapper.thresholds(), resolution, &there, margin)
+        map.surface_points(&there, margin)
     }
 }

@@ -2,9 +2,11 @@
 
 mod config;
 mod information;
+mod matched_map;
 mod matcher;
 mod refinement;
 mod window_search;
 
 pub use config::ScanMatchConfig;
+pub use matched_map::MatchedMap;
 pub use matcher::{ScanMatch, ScanMatcher};

@@ -2,5 +2,6 @@
 
 mod cloud_match;
 mod held_directions;
+mod likelihood;
 mod motion_prior;
 mod room;

@@ -6,6 +6,7 @@ use trundle_core::{Invalid, require_in, require_positive};
 /// The shape of the fitted curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct CurveConfig {
     /// Degree of each polynomial piece, 5 to 12. Default 5: the lowest that meets position, heading and curvature at both ends.
     pub degree: usize,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Transform {
     /// `Vector3`.
-    pub translation: crate::generated::geometry_msgs::Vector3,
+    pub translation: crate::generated::geometry_msgs::Vector3Message,
     /// `Quaternion`.
     pub rotation: crate::generated::geometry_msgs::Quaternion,
 }

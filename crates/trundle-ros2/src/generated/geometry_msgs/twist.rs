@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Twist {
     /// `Vector3`.
-    pub linear: crate::generated::geometry_msgs::Vector3,
+    pub linear: crate::generated::geometry_msgs::Vector3Message,
     /// `Vector3`.
-    pub angular: crate::generated::geometry_msgs::Vector3,
+    pub angular: crate::generated::geometry_msgs::Vector3Message,
 }
 
 impl ros2_client::Message for Twist {}

@@ -21,7 +21,7 @@ impl ros2_client::Message for ComputePathToPoseGoal {}
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ComputePathToPoseResult {
     /// `nav_msgs/Path`.
-    pub path: crate::generated::nav_msgs::Path,
+    pub path: crate::generated::nav_msgs::PathMessage,
     /// `builtin_interfaces/Duration`.
     pub planning_time: crate::generated::builtin_interfaces::Duration,
     /// `uint16`.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct FollowPathGoal {
     /// `nav_msgs/Path`.
-    pub path: crate::generated::nav_msgs::Path,
+    pub path: crate::generated::nav_msgs::PathMessage,
     /// `string`.
     pub controller_id: std::string::String,
     /// `string`.

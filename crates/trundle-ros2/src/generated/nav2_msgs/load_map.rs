@@ -15,7 +15,7 @@ impl ros2_client::Message for LoadMapRequest {}
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoadMapResponse {
     /// `nav_msgs/OccupancyGrid`.
-    pub map: crate::generated::nav_msgs::OccupancyGrid,
+    pub map: crate::generated::nav_msgs::OccupancyGridMessage,
     /// `uint8`.
     pub result: u8,
 }

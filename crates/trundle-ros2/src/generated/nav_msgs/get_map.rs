@@ -15,7 +15,7 @@ impl ros2_client::Message for GetMapRequest {}
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct GetMapResponse {
     /// `OccupancyGrid`.
-    pub map: crate::generated::nav_msgs::OccupancyGrid,
+    pub map: crate::generated::nav_msgs::OccupancyGridMessage,
 }
 
 impl ros2_client::Message for GetMapResponse {}

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// `nav_msgs`: `OccupancyGrid`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct OccupancyGrid {
+pub struct OccupancyGridMessage {
     /// `std_msgs/Header`.
     pub header: crate::generated::std_msgs::Header,
     /// `MapMetaData`.
@@ -13,9 +13,9 @@ pub struct OccupancyGrid {
     pub data: Vec<i8>,
 }
 
-impl ros2_client::Message for OccupancyGrid {}
+impl ros2_client::Message for OccupancyGridMessage {}
 
-impl crate::interface::MessageType for OccupancyGrid {
+impl crate::interface::MessageType for OccupancyGridMessage {
     const PACKAGE: &str = "nav_msgs";
     const NAME: &str = "OccupancyGrid";
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// `nav_msgs`: `Odometry`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Odometry {
+pub struct OdometryMessage {
     /// `std_msgs/Header`.
     pub header: crate::generated::std_msgs::Header,
     /// `string`.
@@ -15,9 +15,9 @@ pub struct Odometry {
     pub twist: crate::generated::geometry_msgs::TwistWithCovariance,
 }
 
-impl ros2_client::Message for Odometry {}
+impl ros2_client::Message for OdometryMessage {}
 
-impl crate::interface::MessageType for Odometry {
+impl crate::interface::MessageType for OdometryMessage {
     const PACKAGE: &str = "nav_msgs";
     const NAME: &str = "Odometry";
 }

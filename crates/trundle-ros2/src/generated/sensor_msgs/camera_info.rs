@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// `sensor_msgs`: `CameraInfo`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct CameraInfo {
+pub struct CameraInfoMessage {
     /// `std_msgs/Header`.
     pub header: crate::generated::std_msgs::Header,
     /// `uint32`.
@@ -29,9 +29,9 @@ pub struct CameraInfo {
     pub roi: crate::generated::sensor_msgs::RegionOfInterest,
 }
 
-impl ros2_client::Message for CameraInfo {}
+impl ros2_client::Message for CameraInfoMessage {}
 
-impl crate::interface::MessageType for CameraInfo {
+impl crate::interface::MessageType for CameraInfoMessage {
     const PACKAGE: &str = "sensor_msgs";
     const NAME: &str = "CameraInfo";
 }

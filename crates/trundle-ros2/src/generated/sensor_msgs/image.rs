@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// `sensor_msgs`: `Image`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Image {
+pub struct ImageMessage {
     /// `std_msgs/Header`.
     pub header: crate::generated::std_msgs::Header,
     /// `uint32`.
@@ -21,9 +21,9 @@ pub struct Image {
     pub data: crate::wire::Bytes,
 }
 
-impl ros2_client::Message for Image {}
+impl ros2_client::Message for ImageMessage {}
 
-impl crate::interface::MessageType for Image {
+impl crate::interface::MessageType for ImageMessage {
     const PACKAGE: &str = "sensor_msgs";
     const NAME: &str = "Image";
 }

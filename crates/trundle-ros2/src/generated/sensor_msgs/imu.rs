@@ -12,11 +12,11 @@ pub struct Imu {
     /// `float64[9]`.
     pub orientation_covariance: [f64; 9],
     /// `geometry_msgs/Vector3`.
-    pub angular_velocity: crate::generated::geometry_msgs::Vector3,
+    pub angular_velocity: crate::generated::geometry_msgs::Vector3Message,
     /// `float64[9]`.
     pub angular_velocity_covariance: [f64; 9],
     /// `geometry_msgs/Vector3`.
-    pub linear_acceleration: crate::generated::geometry_msgs::Vector3,
+    pub linear_acceleration: crate::generated::geometry_msgs::Vector3Message,
     /// `float64[9]`.
     pub linear_acceleration_covariance: [f64; 9],
 }

@@ -18,7 +18,7 @@ pub struct Marker {
     /// `geometry_msgs/Pose`.
     pub pose: crate::generated::geometry_msgs::Pose,
     /// `geometry_msgs/Vector3`.
-    pub scale: crate::generated::geometry_msgs::Vector3,
+    pub scale: crate::generated::geometry_msgs::Vector3Message,
     /// `std_msgs/ColorRGBA`.
     pub color: crate::generated::std_msgs::ColorRGBA,
     /// `builtin_interfaces/Duration`.

@@ -29,7 +29,7 @@ fn left(view: &RunView, goal: &Pose2) -> (f32, Duration) {
     let pose = &view.estimate.pose;
     match &view.plan {
         Some(plan) => {
-            let left = super::remaining::remaining(plan, pose);
+            let left = super::remaining::remaining(&plan.trajectory, pose);
             (left.distance_m as f32, duration(left.time_s))
         }
         None => (pose.distance(goal) as f32, Duration::default()),

@@ -1,6 +1,8 @@
 //! Rules of the navigator: its transitions between states, and its commands in each state.
 
 mod arrival;
+mod fallback;
+mod lost_pose;
 mod no_path;
 mod progress_checker;
 mod transitions;

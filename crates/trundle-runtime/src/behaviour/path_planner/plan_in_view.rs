@@ -74,7 +74,7 @@ impl PathPlanner {
                 InView::Asking
             }
             Some(_) => self.unseen_path(unseen, &best, None),
-            None if !goes_on(&plan, &best, &floor) => self.unseen_path(unseen, &best, None),
+            None if !continues(&plan, &best, &floor) => self.unseen_path(unseen, &best, None),
             None if is_worth(&plan, &best) => self.ended(InView::Plan(Plan::Found(plan))),
             None => self.unseen_path(unseen, &best, Some(plan)),
         }
@@ -124,7 +124,7 @@ impl PathPlanner {
 }
 
 /// Whether a path continues the present motion as smoothly as the best path, and remains on the map.
-fn goes_on(plan: &PlanResult, best: &PlanResult, floor: &OccupancyGrid) -> bool {
+fn continues(plan: &PlanResult, best: &PlanResult, floor: &OccupancyGrid) -> bool {
     let stays =
         plan.trajectory.points().iter().all(|p| floor.geometry().cell_at(p.pose.position()).is_some());
     stays && (plan.is_continuous || !best.is_continuous)

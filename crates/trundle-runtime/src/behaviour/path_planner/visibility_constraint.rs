@@ -10,7 +10,7 @@ pub(crate) struct VisibilityConstraint {
     /// Places at which the candidate paths entered unseen floor.
     pub(crate) virtual_obstacles: Vec<Vector2>,
     /// Observations of the last 20 s.
-    looks: Vec<FloorObservation>,
+    observations: Vec<FloorObservation>,
     /// Number of observations with a result since the goal was given.
     results: usize,
     /// Keep-out zones: floor that observations did not show, and when each zone began.
@@ -45,35 +45,35 @@ impl VisibilityConstraint {
 
     /// Records an observation of `at` from `from`.
     pub(crate) fn record_observation(&mut self, at: Vector2, from: Vector2, now: Stamp) {
-        self.looks.push(FloorObservation { at, from, since: now, is_in_vain: true });
+        self.observations.push(FloorObservation { at, from, since: now, is_in_vain: true });
     }
 
     /// Records the arrival at the last viewpoint.
     pub(crate) fn note_arrival(&mut self, now: Stamp) {
-        self.looks.last_mut().into_iter().for_each(|look| look.since = now);
+        self.observations.last_mut().into_iter().for_each(|observation| observation.since = now);
     }
 
     /// Marks the observations whose floor the newest map shows: they had a result.
     pub(crate) fn note_seen(&mut self, floor: &OccupancyGrid) {
-        for look in &mut self.looks {
-            let is_seen = look.is_in_vain && floor.at(look.at) != Cell::Unknown;
-            look.is_in_vain &= !is_seen;
+        for observation in &mut self.observations {
+            let is_seen = observation.is_in_vain && floor.at(observation.at) != Cell::Unknown;
+            observation.is_in_vain &= !is_seen;
             self.results += usize::from(is_seen);
         }
     }
 
     /// Drops old observations: floor that was hidden then may be in view.
     pub(crate) fn forget(&mut self, now: Stamp) {
-        self.looks.retain(|look| now - look.since < VAIN_VIEW_RETRY_S);
+        self.observations.retain(|observation| now - observation.since < VAIN_VIEW_RETRY_S);
         self.keep_out.retain(|(_, since)| now - *since < VAIN_VIEW_RETRY_S);
     }
 
     /// Positions of the observations of this floor.
     fn observations_of(&self, at: Vector2) -> impl Iterator<Item = Vector2> + '_ {
-        self.looks
+        self.observations
             .iter()
-            .filter(move |look| (look.at - at).norm() < VIRTUAL_OBSTACLE_RADIUS_M)
-            .map(|look| look.from)
+            .filter(move |observation| (observation.at - at).norm() < VIRTUAL_OBSTACLE_RADIUS_M)
+            .map(|observation| observation.from)
     }
 
     /// Whether this floor was observed. Floor that is unknown after an observation remains unknown during the drive.

@@ -14,7 +14,7 @@ use trundle_core::{OccupancyGrid, Stamp, Trajectory, Vector2};
 /// - the time until an obstacle on the path made the path longer, once between two falls below the lowest value. Observations on the detour
 ///   are no progress.
 ///
-/// At the end of the patience in a search over unseen floor the robot looks once more at the reachable point nearest to the goal: what blocked
+/// At the end of the patience in a search over unseen floor the robot observes once more the reachable point nearest to the goal: what blocked
 /// the path there may have left.
 ///
 /// Every goal ends: the lowest value falls a finite number of times, and each drive that leads nowhere ends with a stop, which counts.
@@ -49,13 +49,13 @@ struct Clock {
     is_paused: bool,
     /// Number of observations before an obstacle made the path longer; `None` if none did since the last fall of the lowest potential.
     results_at_detour: Option<usize>,
-    /// The last look, `None` before it.
-    last_look: Option<LastLook>,
+    /// The final observation; `None` before it.
+    final_observation: Option<FinalObservation>,
 }
 
-/// The last look before a goal is given up.
+/// The final observation before a goal is given up.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct LastLook {
+pub(crate) struct FinalObservation {
     /// The reachable seen point nearest to the goal, map frame \[m\].
     pub(crate) nearest: Vector2,
     /// Whether the robot was at its viewpoint.
@@ -71,12 +71,12 @@ const MIN_FALL_M: f64 = 0.15;
 /// Length that an observation with a result takes off the potential \[m\]: the width of the floor that it shows. Source: ours, the diameter
 /// of a virtual obstacle.
 const OBSERVATION_LENGTH_M: f64 = 0.6;
-/// Smallest duration of the last look, with the way there \[s\]. Source: ours.
-pub(crate) const LAST_LOOK_DURATION_S: f64 = 25.0;
-/// Smallest duration of the search at the viewpoint of the last look \[s\]. Source: ours, a turn on the spot.
-const SEARCH_AT_LAST_LOOK_S: f64 = 10.0;
-/// Largest duration of the drive to the viewpoint of the last look \[s\]. Source: ours, 15 m at half the speed.
-const LAST_LOOK_LIMIT_S: f64 = 60.0;
+/// Smallest duration of the final observation, with the drive to its viewpoint \[s\]. Source: ours.
+pub(crate) const MIN_FINAL_OBSERVATION_S: f64 = 25.0;
+/// Smallest duration of the search at the viewpoint of the final observation \[s\]. Source: ours, a turn on the spot.
+const SEARCH_AT_FINAL_VIEWPOINT_S: f64 = 10.0;
+/// Largest duration of the drive to the viewpoint of the final observation \[s\]. Source: ours, 15 m at half the speed.
+const MAX_FINAL_DRIVE_S: f64 = 60.0;
 
 impl ProgressGuard {
     /// Starts anew for another goal.
@@ -130,23 +130,23 @@ impl ProgressGuard {
         }
     }
 
-    /// Begins the last look: `nearest` is the reachable seen point nearest to the goal, map frame, m.
-    pub(crate) fn begin_last_look(&mut self, now: Stamp, nearest: Vector2) {
-        let (until, limit) = (now.after(LAST_LOOK_DURATION_S), now.after(LAST_LOOK_LIMIT_S));
-        self.clock(now).last_look = Some(LastLook { nearest, until, limit, is_there: false });
+    /// Begins the final observation: `nearest` is the reachable seen point nearest to the goal, map frame, m.
+    pub(crate) fn begin_final_observation(&mut self, now: Stamp, nearest: Vector2) {
+        let (until, limit) = (now.after(MIN_FINAL_OBSERVATION_S), now.after(MAX_FINAL_DRIVE_S));
+        self.clock(now).final_observation = Some(FinalObservation { nearest, until, limit, is_there: false });
     }
 
-    /// The robot is at the viewpoint of the last look, or no viewpoint is left.
-    pub(crate) fn arrived_at_last_look(&mut self, now: Stamp) {
-        if let Some(look) = &mut self.clock(now).last_look {
-            look.is_there = true;
-            look.until = look.until.max(now.after(SEARCH_AT_LAST_LOOK_S));
+    /// The robot is at the viewpoint of the final observation, or no viewpoint is left.
+    pub(crate) fn arrived_at_final_viewpoint(&mut self, now: Stamp) {
+        if let Some(observation) = &mut self.clock(now).final_observation {
+            observation.is_there = true;
+            observation.until = observation.until.max(now.after(SEARCH_AT_FINAL_VIEWPOINT_S));
         }
     }
 
-    /// The last look since the last fall of the lowest potential, also after its end.
-    pub(crate) fn last_look(&self) -> Option<LastLook> {
-        self.clock?.last_look
+    /// The final observation since the last fall of the lowest potential, also after its end.
+    pub(crate) fn final_observation(&self) -> Option<FinalObservation> {
+        self.clock?.final_observation
     }
 
     /// Whether the potential of a path of a length \[m\] is above the lowest one: the path has become longer.
@@ -174,9 +174,9 @@ impl ProgressGuard {
     }
 }
 
-impl LastLook {
-    /// Whether the last look goes on: the drive to its viewpoint, and the search there.
-    pub(crate) fn goes_on(&self, now: Stamp) -> bool {
+impl FinalObservation {
+    /// Whether the final observation continues: the drive to its viewpoint, and the search there.
+    pub(crate) fn continues(&self, now: Stamp) -> bool {
         now < self.until || !self.is_there && now < self.limit
     }
 }
@@ -192,7 +192,7 @@ impl Clock {
             is_paused: false,
             since: now,
             results_at_detour: None,
-            last_look: None,
+            final_observation: None,
         }
     }
 

@@ -183,10 +183,10 @@ fn without_path(tools: &mut Tools, search: &mut PathSearch, cause: NoPath, s: &W
         _ => tools.goal.pose().map(|goal| goal.position()),
     };
     let reason = tools.planner.no_path(cause);
-    let has_looked = search.spin.has_turned(MAX_SPINS) && !is_wedged;
+    let has_observed = search.spin.has_turned(MAX_SPINS) && !is_wedged;
     let state = if is_final {
         State::Stopped { reason }
-    } else if has_looked && !search.seeks_viewpoint(&mut tools.planner, &mut tools.follower, s) {
+    } else if has_observed && !search.seeks_viewpoint(&mut tools.planner, &mut tools.follower, s) {
         State::Wait(Wait { reason, search: std::mem::take(search), interrupted: None })
     } else {
         State::Recover(Recover { reason, is_wedged, search: std::mem::take(search) })
@@ -205,12 +205,12 @@ fn is_final(tools: &Tools, search: &mut PathSearch, cause: &NoPath, now: Stamp) 
     tools.goal.is_viewpoint() || tools.ends_without_path && !tools.waits_when_blocked() && is_proven
 }
 
-/// The drive to the last look before the goal is given up; `None` before it, and once the robot is there.
+/// The drive to the final viewpoint before the goal is given up; `None` before it, and once the robot is there.
 fn look_again(tools: &mut Tools, search: &mut PathSearch, s: &WorldState<'_>) -> Next {
-    let nearest = tools.guard.last_look().filter(|look| !look.is_there)?.nearest;
+    let nearest = tools.guard.final_observation().filter(|observation| !observation.is_there)?.nearest;
     search.blocked_at = Some(nearest);
     if !search.seeks_viewpoint(&mut tools.planner, &mut tools.follower, s) {
-        tools.guard.arrived_at_last_look(s.now);
+        tools.guard.arrived_at_final_viewpoint(s.now);
         search.viewpoint = Viewpoint::default();
         return None;
     }

@@ -24,6 +24,7 @@ impl UpAxis {
 /// Placement of a glTF file in the world.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct GltfOptions {
     /// The file's up axis. Default +y, by the standard.
     pub up: UpAxis,

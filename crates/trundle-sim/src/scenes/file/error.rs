@@ -8,6 +8,7 @@ pub type LoadError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Problems of a scene file.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SceneError {
     /// An item, named as in the file (`props[3].size`).
     #[error(transparent)]

@@ -1,6 +1,6 @@
 //! The office scene.
 
-use trundle_core::{Footprint, PinholeCamera, Pose2, Pose3, Vector3};
+use trundle_core::{Footprint, Hypotenuse, PinholeCamera, Pose2, Pose3, Vector3};
 use trundle_sim::scenes::{OFFICE_RING, OFFICE_TWINS};
 use trundle_sim::{HeightBand, Renderer, Scene, View, camera_mount};
 
@@ -8,7 +8,7 @@ use trundle_sim::{HeightBand, Renderer, Scene, View, camera_mount};
 fn ring(step: f64) -> impl Iterator<Item = Pose2> {
     (0..4).flat_map(move |i| {
         let ([ax, ay], [bx, by]) = (OFFICE_RING[i], OFFICE_RING[(i + 1) % 4]);
-        let (length, heading) = ((bx - ax).hypot(by - ay), (by - ay).atan2(bx - ax));
+        let (length, heading) = ((bx - ax).hypotenuse(by - ay), (by - ay).atan2(bx - ax));
         let steps = (length / step) as usize;
         (0..steps).map(move |k| Pose2::new(ax, ay, heading) * Pose2::new(k as f64 * step, 0.0, 0.0))
     })
@@ -19,7 +19,7 @@ fn the_ring_is_40_m_around_in_the_middle_of_its_corridor_and_free() {
     let scene = Scene::by_name("office", 5).unwrap();
     let around: f64 = (0..4)
         .map(|i| (OFFICE_RING[i], OFFICE_RING[(i + 1) % 4]))
-        .map(|([ax, ay], [bx, by])| (bx - ax).hypot(by - ay))
+        .map(|([ax, ay], [bx, by])| (bx - ax).hypotenuse(by - ay))
         .sum();
     assert!((around - 41.75).abs() < 1e-9, "{around} m");
     let band = HeightBand::new(0.012, 0.6).unwrap();

@@ -1,6 +1,6 @@
 //! The floor that a disc reaches from a start.
 
-use trundle_core::{Cell, CellIndex, OccupancyGrid, Vector2};
+use trundle_core::{Cell, CellIndex, Hypotenuse, OccupancyGrid, Vector2};
 
 /// Free positions of a disc on a true grid.
 pub struct ReachableFloor<'g> {
@@ -43,7 +43,7 @@ fn free_for(grid: &OccupancyGrid, radius: f64) -> Vec<bool> {
     let reach = (radius / geometry.resolution + 0.5).ceil() as i64;
     let is_near = |dc: i64, dr: i64| {
         let gap = |d: i64| ((d.abs() as f64 - 0.5) * geometry.resolution).max(0.0);
-        gap(dc).hypot(gap(dr)) <= radius
+        gap(dc).hypotenuse(gap(dr)) <= radius
     };
     let offsets: Vec<(i64, i64)> = (-reach..=reach)
         .flat_map(|dr| (-reach..=reach).map(move |dc| (dc, dr)))

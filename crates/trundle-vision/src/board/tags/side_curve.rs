@@ -39,7 +39,7 @@ const WINDOW_PX: f64 = 2.0;
 const WINDOW_RATIO: f64 = 0.05;
 /// Smallest gradient of an edge, grey values per px. Source: ours.
 const MIN_GRADIENT: f64 = 4.0;
-/// Length from which the curve is a parabola; below, a line, px. Source: ours; the bend of shorter sides is below 0.1 px.
+/// Smallest length at which the curve is a parabola and not a line, px. Source: ours; the bend of shorter sides is below 0.1 px.
 const MIN_CURVED_PX: f64 = 24.0;
 /// Smallest fraction of samples with an edge that fits. Source: ours.
 const MIN_SAMPLE_RATIO: f64 = 0.5;

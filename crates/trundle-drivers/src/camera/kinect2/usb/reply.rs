@@ -11,6 +11,7 @@ pub const COMPLETION_BYTES: usize = 16;
 
 /// Reason why a reply is invalid.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ReplyFault {
     /// The completion came before the data.
     NoData,

@@ -21,6 +21,7 @@ const DEPTH_UNIT_M: f64 = 0.001;
 
 /// Settings of a Kinect v1.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FreenectSettings {
     /// The calibration; `None` for the assumed one.
     pub calibration: Option<RgbdCalibration>,

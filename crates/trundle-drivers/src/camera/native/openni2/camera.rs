@@ -18,6 +18,7 @@ const KIND: &str = "OpenNI2";
 
 /// Settings of a camera of OpenNI2.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct OpenNiSettings {
     /// The calibration; `None` for the fields of view that the camera reports, without distortion.
     pub calibration: Option<RgbdCalibration>,

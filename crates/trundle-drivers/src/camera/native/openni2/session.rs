@@ -64,8 +64,9 @@ fn entry(info: &DeviceInfo) -> DeviceEntry {
 }
 
 fn text(field: &[c_char; 256]) -> String {
-    let bytes: Vec<u8> =
-        field.iter().map(|byte| byte.cast_unsigned()).take_while(|byte| *byte != 0).collect();
+    // A `c_char` is signed on x86-64 and unsigned on aarch64.
+    let byte = |char: &c_char| u8::from_ne_bytes(char.to_ne_bytes());
+    let bytes: Vec<u8> = field.iter().map(byte).take_while(|byte| *byte != 0).collect();
     String::from_utf8_lossy(&bytes).into_owned()
 }
 

@@ -22,6 +22,7 @@ const DEFAULT_DELAY_S: f64 = 0.045;
 
 /// Settings to request from an Orbbec camera. A size or rate of 0 means any.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct OrbbecSettings {
     /// Columns and rows of the colour image \[px\]. Default any.
     pub color_size: (u32, u32),

@@ -6,12 +6,13 @@ use super::device_list::entry;
 use super::frames::{Content, content, parts};
 use super::functions::{Frame, RealSenseApi};
 use super::handle::Handle;
-use super::motion::{GyroSample, GyroSamples};
+use super::motion::GyroSamples;
 use super::pairing::Pairing;
 use super::request::Request;
 use super::running::Running;
 use crate::camera::native::{DeviceEntry, Selection};
-use crate::camera::{CameraError, CameraFrame, CameraInfo, DepthCamera, UsbSpeed};
+use crate::camera::{CameraError, CameraFrame, CameraInfo, DepthCamera, GyroSample, UsbSpeed};
+use std::ffi::c_int;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::Invalid;
@@ -50,25 +51,19 @@ impl RealSenseCamera {
         let about = if is_live {
             find_live(&request, selection, &settings)?
         } else {
-            prepare_file(&request, selection)?
+            prepare_file(&request, selection, settings.gyro)?
         };
         let name = format!("{} {}", about.name, about.serial);
-        let (running, started) = Running::start(request, is_live, &name)?;
+        let (running, started) = Running::start(request, is_live, settings.gyro, &name)?;
         let info = running.info(about, &started, &settings, is_live, &name)?;
         let pairing = Pairing::new(info.color.rate_hz.min(info.depth.rate_hz));
         let gyro = GyroSamples::default();
         Ok(Self { info, running, pairing, gyro, quiet_since: None, has_ended: false })
     }
 
-    /// The samples of the gyro since the last call, oldest first. Empty without [`RealSenseSettings::gyro`]. The library adds only the
-    /// newest sample to each set of images: the rate of the images is too low for an integration.
-    pub fn take_gyro(&mut self) -> Vec<GyroSample> {
-        self.gyro.take()
-    }
-
-    /// The next frame that is not a repetition, within `timeout`.
+    /// The next frame that is not a repetition, within `timeout`; `None` also for a sample of the gyro.
     fn wait(&mut self, timeout: Duration) -> Result<Option<CameraFrame>, CameraError> {
-        let start = Instant::now();
+        let (start, newest) = (Instant::now(), self.gyro.newest());
         loop {
             let left = timeout.saturating_sub(start.elapsed());
             let Some(set) = self.running.wait(left).map_err(|error| error.of(&self.name()))? else {
@@ -77,6 +72,9 @@ impl RealSenseCamera {
             let contents = contents(&self.running.api, set).map_err(|error| error.of(&self.name()))?;
             if let Some(frame) = self.take_contents(contents) {
                 return frame.map(Some).map_err(CameraError::BrokenFrame);
+            }
+            if self.gyro.newest() != newest {
+                return Ok(None);
             }
         }
     }
@@ -93,10 +91,14 @@ impl RealSenseCamera {
     fn next_recorded(&mut self, timeout: Duration) -> Result<Option<CameraFrame>, CameraError> {
         let start = Instant::now();
         while !self.has_ended {
-            let left = timeout.saturating_sub(start.elapsed());
+            let (left, newest) = (timeout.saturating_sub(start.elapsed()), self.gyro.newest());
             if let Some(frame) = self.wait(left.min(STATUS_PERIOD))? {
                 self.quiet_since = None;
                 return Ok(Some(frame));
+            }
+            if self.gyro.newest() != newest {
+                self.quiet_since = None;
+                return Ok(None);
             }
             let is_stopped = self.running.is_played().map_err(|error| error.of(&self.name()))?;
             self.quiet_since = is_stopped.then(|| self.quiet_since.unwrap_or_else(Instant::now));
@@ -122,13 +124,19 @@ impl DepthCamera for RealSenseCamera {
         if !self.info.is_live {
             return self.next_recorded(timeout);
         }
+        let newest = self.gyro.newest();
         match self.wait(timeout)? {
             Some(frame) => Ok(Some(frame)),
+            None if self.gyro.newest() != newest => Ok(None),
             None if self.running.is_unplugged().map_err(|error| error.of(&self.name()))? => {
                 Err(CameraError::Unplugged { device: self.name() })
             }
             None => Ok(None),
         }
+    }
+
+    fn take_gyro(&mut self) -> Vec<GyroSample> {
+        self.gyro.take()
     }
 
     fn has_ended(&self) -> bool {
@@ -171,13 +179,19 @@ fn unavailable(device: DeviceEntry, settings: &RealSenseSettings) -> CameraError
     }
 }
 
-/// Makes a recording wait for its reader, and for the start of all its sensors: the library drops earlier data.
-fn prepare_file(request: &Request, selection: &Selection) -> Result<DeviceEntry, CameraError> {
+/// Makes a recording wait for its reader, and for the start of all its sensors: the library drops earlier data. With `own_pace`, it is
+/// played at the pace of its stamps, and a busy computer loses images and samples: waiting for the reader of single frames stops the
+/// library's synchronisation for good.
+fn prepare_file(
+    request: &Request,
+    selection: &Selection,
+    own_pace: bool,
+) -> Result<DeviceEntry, CameraError> {
     let name = selection.describe("RealSense");
     let prepared = request.resolved_device().and_then(|device| {
         // SAFETY: the device is valid and a recording.
         request.api.call(|error| unsafe {
-            (request.api.rs2_playback_device_set_real_time)(device.get(), 0, error)
+            (request.api.rs2_playback_device_set_real_time)(device.get(), c_int::from(own_pace), error)
         })?;
         // SAFETY: as above.
         request.api.call(|error| unsafe { (request.api.rs2_playback_device_pause)(device.get(), error) })?;

@@ -6,9 +6,8 @@ use super::constants::{
 };
 use super::functions::{Frame, RealSenseApi};
 use super::handle::Handle;
-use super::motion::GyroSample;
 use super::streams::profile_data;
-use crate::camera::RawImage;
+use crate::camera::{GyroSample, RawImage};
 use std::ffi::c_int;
 use std::sync::Arc;
 use trundle_core::{Stamp, Vector3};

@@ -42,10 +42,15 @@ opaque! {
     Profile;
     /// `rs2_frame`.
     Frame;
+    /// `rs2_frame_queue`.
+    FrameQueue;
 }
 
 /// Pointer through which a function returns its error.
 pub(super) type ErrorOut = *mut *mut RawError;
+
+/// `rs2_frame_callback_ptr`: takes a frame, with the pointer given at the start.
+pub(super) type FrameCallback = unsafe extern "C" fn(*mut Frame, *mut c_void);
 
 /// `rs2_intrinsics`.
 #[repr(C)]
@@ -110,6 +115,13 @@ functions! {
         fn rs2_delete_pipeline(*mut Pipeline);
         fn rs2_pipeline_stop(*mut Pipeline, ErrorOut);
         fn rs2_pipeline_start_with_config(*mut Pipeline, *mut Config, ErrorOut) -> *mut PipelineProfile;
+        fn rs2_pipeline_start_with_config_and_callback(
+            *mut Pipeline, *mut Config, FrameCallback, *mut c_void, ErrorOut,
+        ) -> *mut PipelineProfile;
+        fn rs2_create_frame_queue(c_int, ErrorOut) -> *mut FrameQueue;
+        fn rs2_delete_frame_queue(*mut FrameQueue);
+        fn rs2_enqueue_frame(*mut Frame, *mut c_void);
+        fn rs2_try_wait_for_frame(*mut FrameQueue, c_uint, *mut *mut Frame, ErrorOut) -> c_int;
         fn rs2_pipeline_try_wait_for_frames(*mut Pipeline, *mut *mut Frame, c_uint, ErrorOut) -> c_int;
         fn rs2_delete_pipeline_profile(*mut PipelineProfile);
         fn rs2_pipeline_profile_get_device(*mut PipelineProfile, ErrorOut) -> *mut Device;

@@ -10,12 +10,11 @@
 //! |---|---|
 //! | [`settings`] | size, rate, gyro |
 //! | [`camera`] | the camera |
-//! | [`motion`] | samples of the gyro |
 //! | [`intrinsics`] | lens models and poses |
 //! | [`functions`] | the functions of the library |
 //! | `api`, `handle`, `error` | loading, calls, objects, errors |
 //! | `device_list`, `request`, `streams` | connected cameras, requested streams, offered streams |
-//! | `running`, `frames`, `pairing` | a started pipeline, received frames, pairs |
+//! | `running`, `frames`, `pairing`, `motion` | a started pipeline, received frames, pairs, samples of the gyro |
 
 mod api;
 pub mod camera;
@@ -26,7 +25,7 @@ mod frames;
 pub mod functions;
 mod handle;
 pub mod intrinsics;
-pub mod motion;
+mod motion;
 mod pairing;
 mod request;
 mod running;
@@ -37,5 +36,4 @@ pub use api::LIBRARY;
 pub use camera::RealSenseCamera;
 pub use device_list::list_devices;
 pub use functions::RealSenseApi;
-pub use motion::GyroSample;
 pub use settings::RealSenseSettings;

@@ -16,6 +16,7 @@ const MAX_DELAY_S: f64 = 1.0;
 
 /// Settings to request from a RealSense camera. A recording has its own sizes and rates.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct RealSenseSettings {
     /// Columns and rows of the colour image \[px\]. Default 640 x 480.
     pub color_size: (usize, usize),
@@ -23,7 +24,7 @@ pub struct RealSenseSettings {
     pub depth_size: (usize, usize),
     /// Frames per second of both \[Hz\]. Default 30.
     pub rate_hz: u32,
-    /// Whether to read the gyro of a D435i or D455. Default `false`.
+    /// Whether to read the gyro of a D435i or D455, each sample of it. A recording is then played at its own pace. Default `false`.
     pub gyro: bool,
     /// Time from the middle of the exposure to the arrival of a frame \[s\], 0 to 1. Default 0.045, assumed.
     pub delay_s: f64,
@@ -57,6 +58,7 @@ impl RealSenseSettings {
     /// The streams in words.
     pub(super) fn streams(&self) -> String {
         let ((cw, ch), (dw, dh), rate) = (self.color_size, self.depth_size, self.rate_hz);
-        format!("colour {cw} x {ch} rgb8 with depth {dw} x {dh} z16 at {rate} Hz")
+        let gyro = if self.gyro { ", and a gyro" } else { "" };
+        format!("colour {cw} x {ch} rgb8 with depth {dw} x {dh} z16 at {rate} Hz{gyro}")
     }
 }

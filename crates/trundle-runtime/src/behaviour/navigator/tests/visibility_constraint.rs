@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::behaviour::path_search::viewpoint::{ViewTarget, Viewpoint};
-use crate::behaviour::progress_checker::guard::LAST_LOOK_DURATION_S;
+use crate::behaviour::progress_checker::guard::MIN_FINAL_OBSERVATION_S;
 use trundle_planning::Plan;
 
 /// A lane along x whose bend into a side lane along y, at x from 2.6 to 3.2 m, was never seen.
@@ -53,7 +53,7 @@ fn where_no_path_shows_the_floor_in_time_it_is_observed_first_and_never_driven_o
     }
     let patience = settings().patience;
     assert!(
-        looks > 1 && (patience..patience + LAST_LOOK_DURATION_S + 5.0).contains(&seconds),
+        looks > 1 && (patience..patience + MIN_FINAL_OBSERVATION_S + 5.0).contains(&seconds),
         "{looks} looks, {seconds} s"
     );
     let reason = navigator.state().reason().unwrap().to_string();

@@ -123,25 +123,26 @@ fn a_pause_does_not_count() {
 }
 
 #[test]
-fn the_last_look_ends_after_its_time_and_is_forgotten_with_the_next_progress() {
+fn the_final_observation_ends_after_its_time_and_is_forgotten_with_the_next_progress() {
     let (mut guard, door) = (ProgressGuard::default(), Vector2::new(3.0, 1.0));
     guard.time_without_progress(at(0.0), &left(1.0));
-    assert!(guard.last_look().is_none());
-    guard.begin_last_look(at(80.0), door);
-    assert_eq!(guard.last_look().unwrap().nearest, door);
-    guard.arrived_at_last_look(at(90.0));
-    let goes_on = |seconds| guard.last_look().unwrap().goes_on(at(seconds));
-    assert!(goes_on(104.9) && !goes_on(105.1));
+    assert!(guard.final_observation().is_none());
+    guard.begin_final_observation(at(80.0), door);
+    assert_eq!(guard.final_observation().unwrap().nearest, door);
+    guard.arrived_at_final_viewpoint(at(90.0));
+    let continues = |seconds| guard.final_observation().unwrap().continues(at(seconds));
+    assert!(continues(104.9) && !continues(105.1));
     guard.time_without_progress(at(120.0), &left(0.5));
-    assert!(guard.last_look().is_none());
+    assert!(guard.final_observation().is_none());
 }
 
 #[test]
-fn a_long_drive_to_the_last_look_leaves_time_for_the_search_there() {
+fn a_long_drive_to_the_final_viewpoint_leaves_time_for_the_search_there() {
     let mut guard = ProgressGuard::default();
-    guard.begin_last_look(at(80.0), Vector2::zeros());
-    let goes_on = |guard: &ProgressGuard, seconds| guard.last_look().unwrap().goes_on(at(seconds));
-    assert!(goes_on(&guard, 139.9) && !goes_on(&guard, 140.1), "the drive has a limit");
-    guard.arrived_at_last_look(at(125.0));
-    assert!(goes_on(&guard, 134.9) && !goes_on(&guard, 135.1));
+    guard.begin_final_observation(at(80.0), Vector2::zeros());
+    let continues =
+        |guard: &ProgressGuard, seconds| guard.final_observation().unwrap().continues(at(seconds));
+    assert!(continues(&guard, 139.9) && !continues(&guard, 140.1), "the drive has a limit");
+    guard.arrived_at_final_viewpoint(at(125.0));
+    assert!(continues(&guard, 134.9) && !continues(&guard, 135.1));
 }

@@ -13,7 +13,7 @@ pub(super) const LID_PART: u32 = 1;
 /// With w = 1 / depth the ray is at (o w + d) / w. At the side, the horizontal part has the length of the radius. The discriminant uses the
 /// horizontal distance of the ray to the axis, a cross product, which avoids cancellation.
 #[inline(always)]
-pub(super) fn meet_cylinder(
+pub(super) fn intersect_cylinder(
     rays: &Rays,
     o: [f64; 3],
     (radius, height): (f64, f64),

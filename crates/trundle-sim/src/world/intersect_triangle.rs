@@ -8,7 +8,11 @@ use trundle_core::Vector3;
 /// The ray hits a triangle if it is on the same side of all three edges, by the sign of direction . (a x b). This sign is exactly opposite
 /// for the other triangle at the edge, so no ray passes between two triangles.
 #[inline(always)]
-pub(super) fn meet_block(block: &Block, origin: Vector3, direction: Vector3) -> [f64; TRIANGLES_PER_BLOCK] {
+pub(super) fn intersect_block(
+    block: &Block,
+    origin: Vector3,
+    direction: Vector3,
+) -> [f64; TRIANGLES_PER_BLOCK] {
     let mut distances = [0.0; TRIANGLES_PER_BLOCK];
     let ([a, b, c], o, d) = (&block.corners, origin, direction);
     for i in 0..TRIANGLES_PER_BLOCK {

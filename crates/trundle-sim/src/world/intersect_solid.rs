@@ -6,17 +6,17 @@ use trundle_core::{Vector2, Vector3};
 
 impl Shape {
     /// Entry of a ray: distance in lengths of `direction`, and the outward normal.
-    pub(super) fn meet(&self, origin: Vector3, direction: Vector3) -> Option<(f64, Vector3)> {
+    pub(super) fn intersect(&self, origin: Vector3, direction: Vector3) -> Option<(f64, Vector3)> {
         match self {
-            Self::Cuboid(cuboid) => cuboid.meet(origin, direction),
-            Self::Cylinder(cylinder) => cylinder.meet(origin, direction),
+            Self::Cuboid(cuboid) => cuboid.intersect(origin, direction),
+            Self::Cylinder(cylinder) => cylinder.intersect(origin, direction),
         }
     }
 }
 
 impl Cuboid {
     /// The slab method (Kay and Kajiya 1986) in the box's own frame.
-    fn meet(&self, origin: Vector3, direction: Vector3) -> Option<(f64, Vector3)> {
+    fn intersect(&self, origin: Vector3, direction: Vector3) -> Option<(f64, Vector3)> {
         let (s, c) = self.yaw.sin_cos();
         let (o, d) = (turned(origin - self.center, (-s, c)), turned(direction, (-s, c)));
         let (mut near, mut far, mut axis) = (f64::NEG_INFINITY, f64::INFINITY, 0);
@@ -41,13 +41,13 @@ impl Cuboid {
 }
 
 impl Cylinder {
-    fn meet(&self, origin: Vector3, direction: Vector3) -> Option<(f64, Vector3)> {
+    fn intersect(&self, origin: Vector3, direction: Vector3) -> Option<(f64, Vector3)> {
         let o = origin - self.base;
-        self.meet_side(o, direction).or_else(|| self.meet_lid(o, direction))
+        self.intersect_side(o, direction).or_else(|| self.intersect_lid(o, direction))
     }
 
     /// The ray's horizontal projection meets the circle if its distance to the axis, q / |d|, is below the radius.
-    fn meet_side(&self, o: Vector3, d: Vector3) -> Option<(f64, Vector3)> {
+    fn intersect_side(&self, o: Vector3, d: Vector3) -> Option<(f64, Vector3)> {
         let a = d.xy().norm_squared();
         let q = o.xy().perp(&d.xy());
         let root2 = a * self.radius * self.radius - q * q;
@@ -60,7 +60,7 @@ impl Cylinder {
         inside.then(|| (t, Vector3::new(p.x / self.radius, p.y / self.radius, 0.0)))
     }
 
-    fn meet_lid(&self, o: Vector3, d: Vector3) -> Option<(f64, Vector3)> {
+    fn intersect_lid(&self, o: Vector3, d: Vector3) -> Option<(f64, Vector3)> {
         let lid = if d.z < 0.0 { self.height } else { 0.0 };
         let t = (lid - o.z) / d.z;
         let p: Vector2 = o.xy() + d.xy() * t;

@@ -9,7 +9,7 @@ use super::tile::{ROWS, TILE_COLUMNS, Tile, larger, mask, smaller};
 /// Slabs (Kay and Kajiya 1986) in inverse depth: on the plane of each face it is an affine function of the pixel. A ray enters the box
 /// through the last of the planes that face the camera, the smallest inverse depth, if that is before the first of the others.
 #[inline(always)]
-pub(super) fn meet_cuboid(
+pub(super) fn intersect_cuboid(
     rays: &Rays,
     axes: [[f64; 3]; 3],
     origin: [f64; 3],
@@ -37,16 +37,16 @@ pub(super) fn meet_cuboid(
         let (x, y, z) = (x.row(row), y.row(row), z.row(row));
         let (f0, f1, f2) = (f0.row(row), f1.row(row), f2.row(row));
         let (f3, f4, f5) = (f3.row(row), f4.row(row), f5.row(row));
-        let (mut entries, mut is_met, mut ids) = ([0.0; TILE_COLUMNS], [0; TILE_COLUMNS], [0; TILE_COLUMNS]);
+        let (mut entries, mut is_hit, mut ids) = ([0.0; TILE_COLUMNS], [0; TILE_COLUMNS], [0; TILE_COLUMNS]);
         for i in 0..TILE_COLUMNS {
             let entry = smaller(smaller(x[i], y[i]), z[i]);
             let exit = larger(larger(larger(f0[i], f1[i]), larger(f2[i], f3[i])), larger(f4[i], f5[i]));
             // For equal values, the first axis is used. From inside the box, the entry is infinite.
             ids[i] = id + (mask(x[i] > entry) & (1 + (mask(y[i] > entry) & 1)));
-            is_met[i] = mask(entry >= exit) & mask(entry < f32::INFINITY);
+            is_hit[i] = mask(entry >= exit) & mask(entry < f32::INFINITY);
             entries[i] = entry;
         }
-        tile.keep(row, &entries, &is_met, &ids);
+        tile.keep(row, &entries, &is_hit, &ids);
     }
 }
 

@@ -14,7 +14,7 @@ use crate::world::{Block, TRIANGLES_PER_BLOCK};
 /// n = a x b + b x c + c x a. All are affine functions of the pixel, without division or clipping. The two triangles at an edge have exactly opposite
 /// functions of the edge: no pixel between them is lost.
 #[inline(always)]
-pub(super) fn meet_block(
+pub(super) fn intersect_block(
     rays: &Rays,
     apex: [f64; 3],
     block: &Block,
@@ -28,14 +28,21 @@ pub(super) fn meet_block(
         if setups.is_seen[lane] != 0 {
             is_changed = true;
             let [a, b, c, inverse_depth] = &setups.functions;
-            meet_one(a.of(lane), b.of(lane), c.of(lane), inverse_depth.of(lane), id + lane as u32, tile);
+            intersect_triangle(
+                a.of(lane),
+                b.of(lane),
+                c.of(lane),
+                inverse_depth.of(lane),
+                id + lane as u32,
+                tile,
+            );
         }
     }
     is_changed
 }
 
 #[inline(always)]
-fn meet_one(a: Linear, b: Linear, c: Linear, inverse_depth: Linear, id: u32, tile: &mut Tile) {
+fn intersect_triangle(a: Linear, b: Linear, c: Linear, inverse_depth: Linear, id: u32, tile: &mut Tile) {
     let mut is_empty = [0; ROWS];
     for row in 0..ROWS {
         is_empty[row] =
@@ -46,11 +53,11 @@ fn meet_one(a: Linear, b: Linear, c: Linear, inverse_depth: Linear, id: u32, til
             continue;
         }
         let (a, b, c, w) = (a.row(row), b.row(row), c.row(row), inverse_depth.row(row));
-        let mut is_met = [0; TILE_COLUMNS];
+        let mut is_hit = [0; TILE_COLUMNS];
         for i in 0..TILE_COLUMNS {
-            is_met[i] = mask(smaller(smaller(a[i], b[i]), c[i]) >= 0.0);
+            is_hit[i] = mask(smaller(smaller(a[i], b[i]), c[i]) >= 0.0);
         }
-        tile.keep(row, &w, &is_met, &[id; TILE_COLUMNS]);
+        tile.keep(row, &w, &is_hit, &[id; TILE_COLUMNS]);
     }
 }
 
