@@ -718,10 +718,10 @@ await check("experiment: the run that goes on, and the results of those that hav
   withCommand(["experiment", "poses", "--only", ", seed 1", "--out", join(place, "poses")], async (viewer) => {
     const { page } = viewer;
     assert(!(await isShown(page, "#stop")) && (await isShown(page, "#mission-card")));
-    assert.match(await text(page, "series-shown"), /Shown: \d, seed 1/);
-    await until("a result", async () => (await page.locator("#series-ended li").count()) > 0, 120);
     const first = await text(page, "series-shown");
-    await until("another run", async () => (await text(page, "series-shown")) !== first, 60);
+    assert.match(first, /Shown: \d, seed 1/);
+    await until("a result", async () => (await page.locator("#series-ended li").count()) > 0, 120);
+    await until("another run", async () => (await text(page, "series-shown")) !== first, 120);
     await until("a drive", () => speed(viewer) > 0.3);
     await page.waitForTimeout(500);
     await picture("experiment", page);
