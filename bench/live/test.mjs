@@ -729,6 +729,24 @@ await check("experiment: the run that goes on, and the results of those that hav
   }),
 );
 
+await check("an encrypted page: the certificate's origin, a link, and nothing in the clear", async () => {
+  const data = join(import.meta.dirname, "../../crates/trundle-live/tests/data");
+  const files = ["--live-certificate", join(data, "certificate.pem"), "--live-key", join(data, "key.pem")];
+  const other = await start(trundle, ["--live", "127.0.0.1:0", ...files, ...quiet.slice(0, 3)], join(place, "encrypted"));
+  // The test's certificate is signed by nobody whom a browser knows.
+  const viewer = await open(other.drive, { ignoreHTTPSErrors: true });
+  try {
+    assert.match(other.drive, /^https:/);
+    await until("a state", () => viewer.state !== null);
+    assert(await viewer.page.evaluate(() => window.isSecureContext));
+    await assert.rejects(fetch(other.drive.replace("https:", "http:")));
+    return new URL(other.drive).origin.replace(/\d+$/, "PORT");
+  } finally {
+    await viewer.context.close();
+    await other.end();
+  }
+});
+
 await check("no error in the console", async () => assert.deepEqual(problems, []));
 
 await browser.close();

@@ -8,8 +8,8 @@
 # left out. Exit 0 when every check holds or the environment cannot be had (a line begins with "skipped: "), else 1.
 set -u
 
-# Parts of user.py that take 1.5 minutes together; all of them take 4.
-user_parts="goal cancel preempt wrong_frame not_finite late_joiner lifecycle_states clear_costmaps save_map load_map"
+# Parts of user.py that take 2 minutes together; all of them take 4.
+user_parts="goal transforms cancel preempt wrong_frame not_finite late_joiner lifecycle_states clear_costmaps save_map load_map"
 
 if [ $# -lt 1 ]; then
     echo "check: the folder is missing; call: check.sh DIR [TRUNDLE]" >&2
@@ -32,7 +32,7 @@ run() {
 # The features are those of the program, so that its crates are not built twice.
 interface_bytes() {
     cargo build --quiet --release --manifest-path "$here/../../Cargo.toml" --target-dir "$target" --package trundle-ros2 \
-        --package trundle-cli --features trundle-cli/ros2,trundle-cli/mqtt --example interface_bytes
+        --package trundle-cli --features trundle-cli/ros2,trundle-cli/mqtt,trundle-cli/tls --example interface_bytes
 }
 
 run interfaces.py

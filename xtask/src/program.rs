@@ -13,7 +13,7 @@ pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<bool, S
 
 /// Builds the program in a profile (`release`, `dev`); its path. The program of a release has ROS 2 and MQTT.
 pub fn trundle(root: &Path, profile: &str) -> Result<PathBuf, String> {
-    let features: &[&str] = if profile == "release" { &["--features", "ros2,mqtt"] } else { &[] };
+    let features: &[&str] = if profile == "release" { &["--features", "ros2,mqtt,tls"] } else { &[] };
     let build = ["build", "--profile", profile, "--package", "trundle-cli"];
     if !cargo(root, &[&build, features].concat(), &[])? {
         return Err(format!("the program does not build in profile {profile}"));

@@ -2,26 +2,42 @@
 
 use crate::console;
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use trundle::app::operator::{FrontEnd, MapFolder, Operator, OperatorLink, operator_link, refuse_for_replay};
 use trundle::app::{AppError, Progress, RunSetup};
-use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
+use trundle::live::{Certificate, LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
 use trundle::runtime::RobotConfig;
+
+/// The page of a command, for a browser.
+#[derive(Debug, Clone, Args)]
+pub struct ViewArgs {
+    /// Display the command's work in a browser, and steer a run there: prints the link; a run continues after its mission until Ctrl-C. ADDR
+    /// is IP:PORT [default: 127.0.0.1:8642, or a free port if it is in use]
+    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
+    pub live: Option<LiveAddress>,
+    /// Store the tokens of the links in FILE, which keeps links valid after restarts.
+    #[arg(long, value_name = "FILE", requires = "live")]
+    pub live_tokens: Option<PathBuf>,
+    /// Encrypt the page with this certificate: a PEM file, with the chain.
+    #[cfg(feature = "tls")]
+    #[arg(long, value_name = "FILE", requires = "live", requires = "live_key")]
+    pub live_certificate: Option<PathBuf>,
+    /// Key of the certificate: a PEM file.
+    #[cfg(feature = "tls")]
+    #[arg(long, value_name = "FILE", requires = "live_certificate")]
+    pub live_key: Option<PathBuf>,
+}
 
 /// The live page of a run.
 #[derive(Debug, Args)]
 pub struct LiveArgs {
-    /// Display the run in a browser and steer it there: prints the link; the run continues after its mission until Ctrl-C. ADDR is IP:PORT
-    /// [default: 127.0.0.1:8642, or a free port if it is in use]
-    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
-    pub live: Option<LiveAddress>,
+    /// The page.
+    #[command(flatten)]
+    pub view: ViewArgs,
     /// Zones and named places of the map: a GeoJSON file, which stores the changes of the live page. A missing file is created by the first
     /// change.
     #[arg(long, value_name = "FILE")]
     pub zones: Option<PathBuf>,
-    /// Store the tokens of the links in FILE, which keeps links valid after restarts.
-    #[arg(long, value_name = "FILE", requires = "live")]
-    pub live_tokens: Option<PathBuf>,
     /// Maps that the live page may load while the robot runs: each NAME.yaml of DIR.
     #[arg(long, value_name = "DIR", requires = "live", value_parser = MapFolder::checked)]
     pub maps: Option<PathBuf>,
@@ -46,7 +62,7 @@ impl LiveArgs {
         if self.mqtt.mqtt.is_some() {
             return true;
         }
-        self.live.is_some()
+        self.view.live.is_some()
     }
 
     /// The run with the requested zones.
@@ -84,50 +100,50 @@ impl LiveArgs {
         link: &OperatorLink,
         is_steered: bool,
     ) -> Result<Option<LivePage>, AppError> {
-        let Some(address) = self.live else { return Ok(None) };
         let maps = self.maps.clone().map(|folder| MapFolder::open(folder, setup.robot.clone()));
         let maps = maps.transpose().map_err(|problem| AppError::Input(format!("--maps {problem}")))?;
-        let tokens = tokens(self.live_tokens.as_deref())?;
-        let options = LiveOptions::new(address, tokens, is_steered, maps);
-        start_page(options, link.operator(), RunFacts::of(setup)?).map(Some)
+        self.view.serve(link.operator(), || Ok(RunFacts::of(setup)?), is_steered, maps)
     }
 }
 
-/// The tokens of a file, or new ones.
-fn tokens(file: Option<&Path>) -> Result<Tokens, AppError> {
-    Ok(file.map_or_else(Tokens::random, Tokens::of_file)?)
-}
-
-/// Serves a page and prints its links.
-fn start_page(options: LiveOptions, operator: Operator, facts: RunFacts) -> Result<LivePage, AppError> {
-    let page = LivePage::start(options, operator, facts)?;
-    console::print(&page.announcement());
-    Ok(page)
-}
-
-/// A live page for work without a robot's run.
-#[derive(Debug, Args)]
-pub struct ViewArgs {
-    /// Display the progress in a browser: prints the link. ADDR is IP:PORT [default: 127.0.0.1:8642, or a free port if it is in use]
-    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
-    pub live: Option<LiveAddress>,
-    /// Store the tokens of the links in FILE, which keeps links valid after restarts.
-    #[arg(long, value_name = "FILE", requires = "live")]
-    pub live_tokens: Option<PathBuf>,
-}
-
 impl ViewArgs {
+    /// The page of `operator` if requested, with its links printed. A drop ends the page.
+    fn serve(
+        &self,
+        operator: Operator,
+        facts: impl FnOnce() -> Result<RunFacts, AppError>,
+        is_steered: bool,
+        maps: Option<MapFolder>,
+    ) -> Result<Option<LivePage>, AppError> {
+        let Some(address) = self.live else { return Ok(None) };
+        let tokens = self.live_tokens.as_deref().map_or_else(Tokens::random, Tokens::of_file)?;
+        let mut options = LiveOptions::new(address, tokens, is_steered, maps);
+        options.certificate = self.certificate()?;
+        let page = LivePage::start(options, operator, facts()?)?;
+        console::print(&page.announcement());
+        Ok(Some(page))
+    }
+
+    #[cfg(feature = "tls")]
+    fn certificate(&self) -> Result<Option<Certificate>, AppError> {
+        let files = self.live_certificate.as_deref().zip(self.live_key.as_deref());
+        Ok(files.map(|(chain, key)| Certificate::of_files(chain, key)).transpose()?)
+    }
+
+    #[cfg(not(feature = "tls"))]
+    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "as with certificates")]
+    fn certificate(&self) -> Result<Option<Certificate>, AppError> {
+        Ok(None)
+    }
+
     /// The page with `facts` if requested, and its feed. A drop ends the page.
     pub fn start(
         &self,
         facts: impl FnOnce() -> Result<RunFacts, AppError>,
         is_steered: bool,
     ) -> Result<Option<(LivePage, OperatorLink)>, AppError> {
-        let Some(address) = self.live else { return Ok(None) };
         let (operator, link) = operator_link();
-        let tokens = tokens(self.live_tokens.as_deref())?;
-        let options = LiveOptions::new(address, tokens, is_steered, None);
-        Ok(Some((start_page(options, operator, facts()?)?, link)))
+        Ok(self.serve(operator, facts, is_steered, None)?.map(|page| (page, link)))
     }
 
     /// The page of an experiment with this robot.

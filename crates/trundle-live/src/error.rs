@@ -22,6 +22,14 @@ pub enum LiveError {
     /// The system refuses a thread or random bytes.
     #[error("the live page cannot start: {0}")]
     System(String),
+    /// A certificate or its key cannot be used.
+    #[error("certificate of the live page: {}: {problem}", file.display())]
+    Certificate {
+        /// The file.
+        file: PathBuf,
+        /// The problem, and the accepted content.
+        problem: String,
+    },
     /// A file of tokens cannot be used.
     #[error("token file {}: {problem}", file.display())]
     TokenFile {

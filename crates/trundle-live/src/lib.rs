@@ -6,6 +6,7 @@
 //! | part | purpose |
 //! |---|---|
 //! | `access` | tokens of 128 bits: one for driving, one for viewing |
+//! | `certificate` | encryption of the page (feature `tls`) |
 //! | `http` | the page's files, the checks of Host and Origin, limits of connections |
 //! | `viewer` | one browser: data sent to it, and allowed requests |
 //! | `wire` | the messages |
@@ -22,6 +23,7 @@
 
 mod access;
 mod address;
+mod certificate;
 mod error;
 mod history;
 mod http;
@@ -36,6 +38,7 @@ mod wire;
 
 pub use access::{Access, Tokens};
 pub use address::LiveAddress;
+pub use certificate::Certificate;
 pub use error::LiveError;
 pub use options::LiveOptions;
 pub use run_facts::{RunFacts, RunKind};

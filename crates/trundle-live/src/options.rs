@@ -1,6 +1,6 @@
 //! Options of the live page.
 
-use crate::{LiveAddress, Tokens};
+use crate::{Certificate, LiveAddress, Tokens};
 use trundle_app::operator::MapFolder;
 
 /// Options of the live page.
@@ -15,16 +15,18 @@ pub struct LiveOptions {
     pub is_steered: bool,
     /// Maps that may be loaded.
     pub maps: Option<MapFolder>,
+    /// Certificate of an encrypted page.
+    pub certificate: Option<Certificate>,
 }
 
 impl LiveOptions {
-    /// A page at `address`.
+    /// A page at `address`, not encrypted.
     pub const fn new(
         address: LiveAddress,
         tokens: Tokens,
         is_steered: bool,
         maps: Option<MapFolder>,
     ) -> Self {
-        Self { address, tokens, is_steered, maps }
+        Self { address, tokens, is_steered, maps, certificate: None }
     }
 }

@@ -5,7 +5,7 @@ use crate::run_facts::RunFacts;
 use crate::steering::RunSteering;
 use crate::viewer_list::ViewerList;
 use crate::wire::MapTiles;
-use crate::{LiveOptions, Tokens};
+use crate::{Certificate, LiveOptions, Tokens};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 use trundle_app::operator::Operator;
@@ -21,6 +21,8 @@ pub struct PageState {
     pub is_steered: bool,
     /// Whether other machines can reach the page.
     pub is_shared: bool,
+    /// Certificate of an encrypted page.
+    pub certificate: Option<Certificate>,
     /// Facts of the run, sent once.
     pub facts: RunFacts,
     /// Sends commands.
@@ -41,6 +43,7 @@ impl PageState {
             tokens: options.tokens,
             is_steered: options.is_steered,
             is_shared: options.address.is_shared(),
+            certificate: options.certificate,
             facts,
             end: watch::Sender::new(false),
             viewer_list: Mutex::default(),

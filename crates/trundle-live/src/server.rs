@@ -5,7 +5,7 @@ use crate::history::HISTORY_PERIOD;
 use crate::http;
 use crate::page_state::PageState;
 use crate::run_facts::RunFacts;
-use crate::{LiveError, LiveOptions};
+use crate::{Certificate, LiveError, LiveOptions};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -31,6 +31,7 @@ const END_CHECK_PERIOD: Duration = Duration::from_millis(5);
 pub struct LivePage {
     address: SocketAddr,
     is_shared: bool,
+    certificate: Option<Certificate>,
     drive_token: Option<String>,
     view_token: String,
     end: Option<oneshot::Sender<()>>,
@@ -49,6 +50,7 @@ impl LivePage {
         let is_shared = options.address.is_shared();
         let drive_token = options.is_steered.then(|| options.tokens.of(Access::Drive).to_owned());
         let view_token = options.tokens.of(Access::View).to_owned();
+        let certificate = options.certificate.clone();
         let state = Arc::new(PageState::new(options, operator, facts));
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(system)?;
         let (end, ended) = oneshot::channel();
@@ -58,7 +60,8 @@ impl LivePage {
             run_to_end(runtime, serve(listener, state, ended));
         };
         let thread = std::thread::Builder::new().name("live-page".to_owned()).spawn(work).map_err(system)?;
-        Ok(Self { address, is_shared, drive_token, view_token, end: Some(end), thread: Some(thread) })
+        let (end, thread) = (Some(end), Some(thread));
+        Ok(Self { address, is_shared, certificate, drive_token, view_token, end, thread })
     }
 
     /// Address of the page.
@@ -74,11 +77,21 @@ impl LivePage {
             Access::Drive => self.drive_token.as_ref()?,
             Access::View => &self.view_token,
         };
+        Some(format!("{}/#{token}", self.origin()))
+    }
+
+    /// Scheme, name and port of the links: the page's address, or a name of the certificate if that does not hold for the address.
+    fn origin(&self) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
             address.set_ip(own_address().unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)));
         }
-        Some(format!("http://{address}/#{token}"))
+        let Some(certificate) = &self.certificate else { return format!("http://{address}") };
+        let is_known = certificate.covers(&address.ip().to_string());
+        match certificate.first_name().filter(|_| !is_known) {
+            Some(name) => format!("https://{name}:{}", address.port()),
+            None => format!("https://{address}"),
+        }
     }
 
     /// Notice for a person: the links, and a warning if other machines can reach the page.
@@ -95,9 +108,11 @@ impl LivePage {
         if self.is_shared {
             let can =
                 if self.drive_token.is_some() { "drive the robot" } else { "see all that the page shows" };
-            lines.push(format!(
-                "warning: other machines can reach the live page, and its network is not encrypted: who reads the link can {can}"
-            ));
+            let who = match self.certificate {
+                None => ", and its network is not encrypted: who reads the link",
+                Some(_) => ": who has the link",
+            };
+            lines.push(format!("warning: other machines can reach the live page{who} can {can}"));
         }
         lines.join("\n")
     }
@@ -134,8 +149,9 @@ async fn serve(listener: TcpListener, state: Arc<PageState>, ended: oneshot::Rec
         Err(error) => return tracing::error!("the live page cannot be served: {error}"),
     };
     let router = http::router(Arc::clone(&state));
+    let certificate = state.certificate.clone();
     tokio::select! {
-        () = http::serve(listener, router) => {}
+        () = http::serve(listener, router, certificate) => {}
         () = keep_history(&state) => {}
         _ = ended => say_goodbye(&state).await,
     }
@@ -201,6 +217,7 @@ mod tests {
         let page = LivePage {
             address: (Ipv4Addr::LOCALHOST, 1).into(),
             is_shared: false,
+            certificate: None,
             drive_token: None,
             view_token: String::new(),
             end: None,

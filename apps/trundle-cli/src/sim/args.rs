@@ -162,7 +162,7 @@ impl SimArgs {
     /// The page: one at the keys always has one.
     pub fn page_args(&self) -> ViewArgs {
         let default = self.driver.keys.then(LiveAddress::default);
-        ViewArgs { live: self.live.live.or(default), live_tokens: self.live.live_tokens.clone() }
+        ViewArgs { live: self.live.live.or(default), ..self.live.clone() }
     }
 
     /// Whether a page shows the drive.

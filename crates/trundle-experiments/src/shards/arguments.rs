@@ -1,8 +1,18 @@
 //! The arguments that decide on the runs of an experiment.
 
 /// Options that differ between the shards of one experiment, or that the manifest stores separately.
-const LEFT_OUT: [&str; 8] =
-    ["--shard", "--run", "--out", "--threads", "--live", "--live-tokens", "--config", "--set"];
+const LEFT_OUT: [&str; 10] = [
+    "--shard",
+    "--run",
+    "--out",
+    "--threads",
+    "--live",
+    "--live-tokens",
+    "--live-certificate",
+    "--live-key",
+    "--config",
+    "--set",
+];
 /// Such options without a value.
 const FLAGS_LEFT_OUT: [&str; 4] = ["-q", "--quiet", "-v", "--verbose"];
 

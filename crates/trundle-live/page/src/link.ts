@@ -42,7 +42,7 @@ export class Link {
 
   connect(): void {
     this.events.onState("connecting", "");
-    const socket = new WebSocket(`ws://${location.host}/live`);
+    const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
     this.socket = socket;
     socket.binaryType = "arraybuffer";
     socket.onopen = () => this.send({ type: "hello", version: WIRE_VERSION, token: this.token, name: this.name });

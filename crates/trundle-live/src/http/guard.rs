@@ -11,18 +11,20 @@ use std::sync::Arc;
 /// Checks the Host of a request and adds the headers of every answer.
 pub async fn check(State(state): State<Arc<PageState>>, request: Request, next: Next) -> Response {
     let host = host_of(request.headers()).map(str::to_owned);
-    let Some(host) = host.filter(|host| is_own_host(host, state.is_shared)) else {
+    let is_encrypted = state.certificate.is_some();
+    let Some(host) = host.filter(|host| is_own_host(host, &state)) else {
         let text = "this name is none of the robot: use its address, as the program prints it";
-        return with_headers((StatusCode::MISDIRECTED_REQUEST, text).into_response(), "");
+        return with_headers((StatusCode::MISDIRECTED_REQUEST, text).into_response(), "", is_encrypted);
     };
-    with_headers(next.run(request).await, &host)
+    with_headers(next.run(request).await, &host, is_encrypted)
 }
 
 /// Whether a request comes from the page itself: browsers report a page of another origin in this header. A request without the header does
 /// not come from a browser's page and is refused too.
-pub fn is_own_origin(headers: &HeaderMap) -> bool {
+pub fn is_own_origin(headers: &HeaderMap, is_encrypted: bool) -> bool {
     let origin = headers.get(header::ORIGIN).and_then(|origin| origin.to_str().ok());
-    let own = host_of(headers).map(|host| format!("http://{host}"));
+    let scheme = if is_encrypted { "https" } else { "http" };
+    let own = host_of(headers).map(|host| format!("{scheme}://{host}"));
     origin.is_some() && origin == own.as_deref()
 }
 
@@ -30,17 +32,24 @@ fn host_of(headers: &HeaderMap) -> Option<&str> {
     headers.get(header::HOST)?.to_str().ok()
 }
 
-/// Whether a Host is a name of this machine. A page that rebinds its own name to this machine would send that name. An address cannot be
-/// rebound.
-fn is_own_host(host: &str, is_shared: bool) -> bool {
+/// Whether a Host is a name of this machine, or one of its certificate. A page that rebinds its own name to this machine would send that
+/// name. An address cannot be rebound, and a browser that meets the certificate under another name opens no page.
+fn is_own_host(host: &str, state: &PageState) -> bool {
+    let Some(name) = name_of(host) else { return false };
+    is_own_name(name, state.is_shared) || state.certificate.as_ref().is_some_and(|own| own.covers(name))
+}
+
+/// The name or the address of a Host; `None` if its port is invalid.
+fn name_of(host: &str) -> Option<&str> {
     let (name, port) = match host.strip_prefix('[') {
         Some(rest) => rest.split_once(']').unwrap_or_default(),
         None => host.split_at(host.rfind(':').unwrap_or(host.len())),
     };
     let is_port = |port: &str| port.strip_prefix(':').is_some_and(|port| port.parse::<u16>().is_ok());
-    if !port.is_empty() && !is_port(port) {
-        return false;
-    }
+    (port.is_empty() || is_port(port)).then_some(name)
+}
+
+fn is_own_name(name: &str, is_shared: bool) -> bool {
     match name.parse::<IpAddr>() {
         Ok(address) => is_shared || address.is_loopback(),
         Err(_) => name.eq_ignore_ascii_case("localhost") || is_shared && is_machine_name(name),
@@ -55,10 +64,11 @@ fn is_machine_name(name: &str) -> bool {
     !own.is_empty() && plain.eq_ignore_ascii_case(own)
 }
 
-fn with_headers(mut response: Response, host: &str) -> Response {
+fn with_headers(mut response: Response, host: &str, is_encrypted: bool) -> Response {
+    let scheme = if is_encrypted { "wss" } else { "ws" };
     let policy = format!(
         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; \
-         connect-src 'self' ws://{host}; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+         connect-src 'self' {scheme}://{host}; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
     );
     let fixed = [
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
@@ -85,8 +95,9 @@ mod tests {
 
     #[test]
     fn only_names_that_cannot_be_rebound_are_own() {
+        let is_own = |host, is_shared| name_of(host).is_some_and(|name| is_own_name(name, is_shared));
         for own in ["127.0.0.1:8642", "localhost:8642", "LOCALHOST", "[::1]:8642", "127.9.9.9"] {
-            assert!(is_own_host(own, false), "{own}");
+            assert!(is_own(own, false), "{own}");
         }
         for foreign in [
             "evil.example:8642",
@@ -97,9 +108,9 @@ mod tests {
             "127.0.0.1:8642; x",
             "[::1",
         ] {
-            assert!(!is_own_host(foreign, false), "{foreign}");
+            assert!(!is_own(foreign, false), "{foreign}");
         }
-        assert!(is_own_host("192.168.1.4:8642", true) && !is_own_host("evil.example", true));
+        assert!(is_own("192.168.1.4:8642", true) && !is_own("evil.example", true));
     }
 
     #[test]
@@ -110,9 +121,11 @@ mod tests {
             origin.map(|origin| headers.insert(header::ORIGIN, HeaderValue::from_static(origin)));
             headers
         };
-        assert!(is_own_origin(&headers(Some("http://127.0.0.1:8642"))));
+        assert!(is_own_origin(&headers(Some("http://127.0.0.1:8642")), false));
+        assert!(is_own_origin(&headers(Some("https://127.0.0.1:8642")), true));
+        assert!(!is_own_origin(&headers(Some("http://127.0.0.1:8642")), true), "a page without encryption is another one");
         for foreign in [None, Some("http://evil.example"), Some("null"), Some("http://127.0.0.1:8643")] {
-            assert!(!is_own_origin(&headers(foreign)), "{foreign:?}");
+            assert!(!is_own_origin(&headers(foreign), false), "{foreign:?}");
         }
     }
 }

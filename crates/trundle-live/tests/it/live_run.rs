@@ -53,13 +53,19 @@ impl LiveRun {
 
     /// A run, steered or not.
     pub fn with_steering(is_steered: bool) -> Self {
+        Self::with_options(is_steered, |_| ())
+    }
+
+    /// A run, steered or not, with changed options of its page.
+    pub fn with_options(is_steered: bool, change: impl FnOnce(&mut LiveOptions)) -> Self {
         let place = tempfile::tempdir().unwrap();
         let setup = RunSetup::new("nowhere", Mission::default(), RobotConfig::default()).operated();
         let (operator, link) = operator_link();
         let tokens = Tokens::random().unwrap();
         let address = "127.0.0.1:0".parse().unwrap();
         let maps = Some(MapFolder::open(place.path().to_owned(), setup.robot.clone()).unwrap());
-        let options = LiveOptions::new(address, tokens.clone(), is_steered, maps);
+        let mut options = LiveOptions::new(address, tokens.clone(), is_steered, maps);
+        change(&mut options);
         let page = LivePage::start(options, operator.clone(), RunFacts::of(&setup).unwrap()).unwrap();
         let is_over = Arc::<AtomicBool>::default();
         let mut body = PacedBody { step: 0, is_over: Arc::clone(&is_over) };

@@ -5,5 +5,7 @@ mod browser;
 mod guard;
 mod live_run;
 mod steering;
+#[cfg(feature = "tls")]
+mod tls;
 mod viewers;
 mod zones;

@@ -1,0 +1,138 @@
+//! Encryption of the page by a given certificate.
+
+#[cfg(feature = "tls")]
+pub use with_tls::Certificate;
+#[cfg(not(feature = "tls"))]
+pub use without_tls::Certificate;
+
+#[cfg(not(feature = "tls"))]
+mod without_tls {
+    //! A build without TLS: there is no certificate.
+
+    use std::io;
+    use tokio::net::TcpStream;
+
+    /// Certificate of the page. No value exists: this build has no feature `tls`.
+    #[derive(Debug, Clone)]
+    pub enum Certificate {}
+
+    impl Certificate {
+        pub(crate) fn covers(&self, _name: &str) -> bool {
+            match *self {}
+        }
+
+        pub(crate) fn first_name(&self) -> Option<String> {
+            match *self {}
+        }
+
+        pub(crate) async fn accept(&self, _stream: TcpStream) -> io::Result<TcpStream> {
+            match *self {}
+        }
+    }
+}
+
+#[cfg(feature = "tls")]
+mod with_tls {
+    //! TLS 1.2 and 1.3 by rustls.
+
+    use crate::LiveError;
+    use std::fs::File;
+    use std::io::{self, Read};
+    use std::path::Path;
+    use std::sync::Arc;
+    use tokio::net::TcpStream;
+    use tokio_rustls::TlsAcceptor;
+    use tokio_rustls::rustls::client::verify_server_name;
+    use tokio_rustls::rustls::crypto::ring;
+    use tokio_rustls::rustls::pki_types::pem::PemObject;
+    use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer, ServerName};
+    use tokio_rustls::rustls::server::ParsedCertificate;
+    use tokio_rustls::rustls::{Error, ServerConfig};
+    use tokio_rustls::server::TlsStream;
+    use webpki::EndEntityCert;
+
+    /// Largest file of a certificate or a key that is read \[bytes\]: a chain of ten certificates has about 20 kB. Source: ours.
+    const MAX_FILE_BYTES: u64 = 256 * 1024;
+    /// Protocol that the page speaks within TLS. Source: RFC 7301.
+    const HTTP_1: &[u8] = b"http/1.1";
+
+    /// Certificate and key of the page. Copies share them.
+    #[derive(Clone)]
+    pub struct Certificate {
+        acceptor: TlsAcceptor,
+        own: CertificateDer<'static>,
+    }
+
+    impl Certificate {
+        /// The certificate of a file, with the others of its chain, and the key of another file; both are PEM.
+        ///
+        /// # Errors
+        /// When a file cannot be read, has another content, or the key is not that of the certificate.
+        pub fn of_files(chain: &Path, key: &Path) -> Result<Self, LiveError> {
+            let certificates = certificates(&read(chain)?).map_err(|problem| broken(chain, problem))?;
+            let own = certificates.first().cloned();
+            let own = own.ok_or_else(|| broken(chain, "it has no certificate, expected a PEM file with BEGIN CERTIFICATE"))?;
+            EndEntityCert::try_from(&own).map_err(|problem| broken(chain, format!("not a certificate of a server: {problem}")))?;
+            let secret = PrivateKeyDer::from_pem_slice(&read(key)?);
+            let secret = secret.map_err(|_| broken(key, "it has no key, expected a PEM file with BEGIN PRIVATE KEY, not encrypted"))?;
+            let config = ServerConfig::builder_with_provider(Arc::new(ring::default_provider()))
+                .with_safe_default_protocol_versions()
+                .map_err(|problem| LiveError::System(problem.to_string()))?
+                .with_no_client_auth()
+                .with_single_cert(certificates, secret);
+            let mut config = config.map_err(|problem| refused_key(chain, key, &problem))?;
+            config.alpn_protocols = vec![HTTP_1.to_vec()];
+            Ok(Self { acceptor: TlsAcceptor::from(Arc::new(config)), own })
+        }
+
+        /// Whether the certificate is valid for a name or an address.
+        pub(crate) fn covers(&self, name: &str) -> bool {
+            let Ok(name) = ServerName::try_from(name) else { return false };
+            ParsedCertificate::try_from(&self.own).is_ok_and(|own| verify_server_name(&own, &name).is_ok())
+        }
+
+        /// The first name of the certificate that is no pattern.
+        pub(crate) fn first_name(&self) -> Option<String> {
+            let own = EndEntityCert::try_from(&self.own).ok()?;
+            own.valid_dns_names().find(|name| !name.contains('*')).map(str::to_owned)
+        }
+
+        /// The encrypted connection of a browser.
+        pub(crate) async fn accept(&self, stream: TcpStream) -> io::Result<TlsStream<TcpStream>> {
+            self.acceptor.accept(stream).await
+        }
+    }
+
+    /// A debug text must not show the key.
+    impl std::fmt::Debug for Certificate {
+        fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            f.write_str("Certificate")
+        }
+    }
+
+    fn read(file: &Path) -> Result<Vec<u8>, LiveError> {
+        let mut bytes = Vec::new();
+        let open = File::open(file).and_then(|open| open.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes));
+        open.map_err(|problem| broken(file, problem.to_string()))?;
+        if bytes.len() as u64 > MAX_FILE_BYTES {
+            return Err(broken(file, format!("it has more than {MAX_FILE_BYTES} bytes, expected a PEM file")));
+        }
+        Ok(bytes)
+    }
+
+    fn certificates(text: &[u8]) -> Result<Vec<CertificateDer<'static>>, String> {
+        let found: Result<Vec<_>, _> = CertificateDer::pem_slice_iter(text).collect();
+        found.map_err(|problem| format!("not a PEM file: {problem}"))
+    }
+
+    fn refused_key(chain: &Path, key: &Path, problem: &Error) -> LiveError {
+        match problem {
+            Error::InconsistentKeys(_) => broken(key, format!("it is not the key of the certificate {}", chain.display())),
+            _ => broken(key, format!("the key cannot be used: {problem}; expected RSA, ECDSA (P-256, P-384) or Ed25519")),
+        }
+    }
+
+    fn broken(file: &Path, problem: impl Into<String>) -> LiveError {
+        LiveError::Certificate { file: file.to_owned(), problem: problem.into() }
+    }
+}
