@@ -53,7 +53,7 @@ pub use mission::executor_config::MissionExecutorConfig;
 pub use mission::{
     DockFailure, GoalOptions, Mission, MissionState, Task, TaskEnd, TaskGoal, TaskRecord, WhenBlocked,
 };
-pub use operator::{OperatorCommand, PoseGuess, RunSetting, TELEOP_SILENCE_S, require_loadable};
+pub use operator::{OperatorCommand, PoseGuess, RunSetting, RunSettings, TELEOP_SILENCE_S, require_loadable};
 pub use range_source::RangeSource;
 pub use reason::{NoPath, Reason, ReasonKind, TaskFailure, TransitionReason};
 pub use report::{PoseMeasurements, StepReport};

@@ -1,10 +1,11 @@
 //! Commands of an operator (a person or a program) to a running robot.
 
+use crate::mission::executor_config::{ARRIVAL_BOUND_RANGE_M, ARRIVAL_HEADING_RANGE_DEG};
 use crate::mission::goal_options::PATIENCE_RANGE_S;
 use crate::{Mission, RobotConfig};
 use serde::{Deserialize, Serialize};
 use trundle_core::{
-    GridGeometry, Invalid, MAX_TEXT_CELLS, MapAnnotations, OccupancyGrid, Pose2, SPEED_LIMIT_RANGE_M_S,
+    DriveLimits, GridGeometry, Invalid, MAX_TEXT_CELLS, MapAnnotations, OccupancyGrid, Pose2, SPEED_LIMIT_RANGE_M_S,
     Twist2, require_finite, require_in,
 };
 use trundle_mapping::GridMapper;
@@ -122,17 +123,45 @@ impl PoseGuess {
 pub enum RunSetting {
     /// `limits.v_m_s`: highest forward speed of the next plans \[m/s\]. The robot file's speed is never exceeded.
     Speed(f64),
+    /// `limits.omega_rad_s`: highest turn rate of the next plans \[rad/s\]. The robot file's turn rate is never exceeded.
+    TurnRate(f64),
     /// `mission_executor.patience_s`: time without progress after which a goal is abandoned \[s\].
     Patience(f64),
+    /// `mission_executor.arrival_bound_m`: bound of the position's error up to which an arrival is certain \[m\].
+    ArrivalBound(f64),
+    /// `mission_executor.arrival_heading_bound_deg`: bound of the heading's error up to which an arrival is certain \[deg\].
+    ArrivalHeadingBound(f64),
 }
 
+/// The settings that may change while the robot runs, in the order of [`RunSetting`].
+pub type RunSettings = [RunSetting; 5];
+
+/// Range of the limit of the turn rate \[rad/s\]. Source: ours; a slower robot seems to stand.
+const TURN_RATE_RANGE_RAD_S: (f64, f64) = (0.05, 10.0);
+
 impl RunSetting {
+    /// All settings, with the values of a robot file.
+    #[must_use]
+    pub fn all_of(robot: &RobotConfig) -> RunSettings {
+        let executor = &robot.mission_executor;
+        [
+            Self::Speed(robot.limits.v),
+            Self::TurnRate(robot.limits.omega),
+            Self::Patience(executor.patience),
+            Self::ArrivalBound(executor.arrival_bound),
+            Self::ArrivalHeadingBound(executor.arrival_heading_bound_deg),
+        ]
+    }
+
     /// Key of the setting in the robot file.
     #[must_use]
     pub fn key(self) -> &'static str {
         match self {
             Self::Speed(_) => "limits.v_m_s",
+            Self::TurnRate(_) => "limits.omega_rad_s",
             Self::Patience(_) => "mission_executor.patience_s",
+            Self::ArrivalBound(_) => "mission_executor.arrival_bound_m",
+            Self::ArrivalHeadingBound(_) => "mission_executor.arrival_heading_bound_deg",
         }
     }
 
@@ -140,18 +169,19 @@ impl RunSetting {
     #[must_use]
     pub fn value(self) -> f64 {
         match self {
-            Self::Speed(value) | Self::Patience(value) => value,
+            Self::Speed(value)
+            | Self::TurnRate(value)
+            | Self::Patience(value)
+            | Self::ArrivalBound(value)
+            | Self::ArrivalHeadingBound(value) => value,
         }
     }
 
     /// The setting with a key of the robot file, in the unit of the key; `None` if it cannot change while the robot runs.
     #[must_use]
     pub fn of_key(key: &str, value: f64) -> Option<Self> {
-        match key {
-            "limits.v_m_s" => Some(Self::Speed(value)),
-            "mission_executor.patience_s" => Some(Self::Patience(value)),
-            _ => None,
-        }
+        let all = [Self::Speed, Self::TurnRate, Self::Patience, Self::ArrivalBound, Self::ArrivalHeadingBound];
+        all.into_iter().map(|setting| setting(value)).find(|setting| setting.key() == key)
     }
 
     /// Smallest and largest value.
@@ -159,16 +189,34 @@ impl RunSetting {
     pub fn range(self) -> (f64, f64) {
         match self {
             Self::Speed(_) => SPEED_LIMIT_RANGE_M_S,
+            Self::TurnRate(_) => TURN_RATE_RANGE_RAD_S,
             Self::Patience(_) => PATIENCE_RANGE_S,
+            Self::ArrivalBound(_) => ARRIVAL_BOUND_RANGE_M,
+            Self::ArrivalHeadingBound(_) => ARRIVAL_HEADING_RANGE_DEG,
+        }
+    }
+
+    /// Smallest and largest value of a robot with these limits: it is never faster than they are.
+    #[must_use]
+    pub fn range_within(self, limits: &DriveLimits) -> (f64, f64) {
+        let (min, max) = self.range();
+        match self {
+            Self::Speed(_) => (min, max.min(limits.v)),
+            Self::TurnRate(_) => (min, max.min(limits.omega)),
+            _ => (min, max),
         }
     }
 
     fn validated(self) -> Result<Self, Invalid> {
         let (min, max) = self.range();
-        match self {
-            Self::Speed(value) => require_in("speed limit", value, "m/s", min, max)?,
-            Self::Patience(value) => require_in("patience", value, "s", min, max)?,
+        let (name, unit) = match self {
+            Self::Speed(_) => ("speed limit", "m/s"),
+            Self::TurnRate(_) => ("limit of the turn rate", "rad/s"),
+            Self::Patience(_) => ("patience", "s"),
+            Self::ArrivalBound(_) => ("bound of an arrival's position", "m"),
+            Self::ArrivalHeadingBound(_) => ("bound of an arrival's heading", "deg"),
         };
+        require_in(name, self.value(), unit, min, max)?;
         Ok(self)
     }
 }
@@ -201,7 +249,8 @@ mod tests {
             assert!(change(key, value).is_err(), "{key} {value}");
         }
         assert_eq!(RunSetting::of_key("drive.wheel_radius_m", 0.1), None);
-        for setting in [RunSetting::Speed(0.25), RunSetting::Patience(8.0)] {
+        for setting in RunSetting::all_of(&RobotConfig::default()) {
+            assert!(setting.validated().is_ok(), "{setting:?}");
             assert_eq!(RunSetting::of_key(setting.key(), setting.value()), Some(setting));
             assert!(crate::settings::reference().iter().any(|known| known.key == setting.key()));
         }

@@ -29,7 +29,7 @@ use crate::{
     mission::{Mission, MissionState, Task},
     monitors::camera_health::CameraHealth,
     monitors::scan_map_consistency::ScanMapConsistency,
-    operator::RunSetting,
+    operator::{RunSetting, RunSettings},
     range_source::RangeSource,
     report::StepReport,
     stage::{Stage, StageTimes},
@@ -74,7 +74,7 @@ pub struct Robot {
     steering: Steering,
     zones: RobotZones,
     /// Present values of the settings that may change while the robot runs.
-    settings: [RunSetting; 2],
+    settings: RunSettings,
     latest: Latest,
     times: StageTimes,
 }
@@ -139,10 +139,7 @@ impl Robot {
             obstacles: ObstacleTracks::new(config.movers)?,
             steering: Steering::new(&config, &footprint)?,
             zones: RobotZones::new(&footprint, config.planning.room.escape),
-            settings: [
-                RunSetting::Speed(config.limits.v),
-                RunSetting::Patience(config.mission_executor.patience),
-            ],
+            settings: RunSetting::all_of(&config),
             latest: Latest::default(),
             times: StageTimes::default(),
         })

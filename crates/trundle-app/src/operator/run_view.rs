@@ -8,7 +8,7 @@ use trundle_core::{
     Battery, OccupancyGrid, Odometry, Pose2, PoseEstimate, Scan, Stamp, Trajectory, Twist2, Vector2, Vector3,
 };
 use trundle_planning::MovingObstacle;
-use trundle_runtime::{DriveState, MotionHold, RunSetting, Task, TaskRecord, TransitionReason};
+use trundle_runtime::{DriveState, MotionHold, RunSettings, Task, TaskRecord, TransitionReason};
 
 /// State of a run after a step. Large parts are shared with earlier views that have equal parts.
 #[derive(Debug, Clone)]
@@ -42,7 +42,7 @@ pub struct RunView {
     /// Number of runs of each stage.
     pub counts: RunCounts,
     /// Present values of the settings that may change while the robot runs; `None` without a robot with settings.
-    pub settings: Option<[RunSetting; 2]>,
+    pub settings: Option<RunSettings>,
 }
 
 /// State of a run.

@@ -159,7 +159,7 @@ impl RunSteering {
         let setting =
             setting.ok_or_else(|| CommandRefusal::of(format!("{key} cannot change while the robot runs")))?;
         let (text, (min, max)) =
-            (SettingText::of(setting, &self.limits), SettingText::range(setting, &self.limits));
+            (SettingText::of(setting, &self.limits), setting.range_within(&self.limits));
         require_in(key, value, text.unit, min, max)?;
         self.send(OperatorCommand::Change(setting))
     }

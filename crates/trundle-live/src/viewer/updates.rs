@@ -15,7 +15,7 @@ use tokio::sync::mpsc::Receiver;
 use tokio::time::{Instant, MissedTickBehavior, interval};
 use trundle_app::operator::{FeatureView, PlanView, RunView, SeriesView, VisualMapView};
 use trundle_core::{MapAnnotations, Stamp};
-use trundle_runtime::RunSetting;
+use trundle_runtime::{RunSetting, RunSettings};
 
 /// Period of views. Source: ours.
 const VIEW_PERIOD: Duration = Duration::from_millis(100);
@@ -77,7 +77,7 @@ struct Updates {
 #[derive(Default)]
 struct SentNotes {
     annotations: Option<Arc<MapAnnotations>>,
-    settings: Option<[RunSetting; 2]>,
+    settings: Option<RunSettings>,
     series: Option<Arc<SeriesView>>,
     recording: Option<RecordingText>,
 }

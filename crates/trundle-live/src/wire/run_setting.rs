@@ -26,7 +26,7 @@ impl SettingText {
     /// The setting with its present value, for a robot with these limits.
     pub fn of(setting: RunSetting, limits: &DriveLimits) -> Self {
         let known = reference().iter().find(|known| known.key == setting.key());
-        let (min, max) = Self::range(setting, limits);
+        let (min, max) = setting.range_within(limits);
         Self {
             key: setting.key(),
             text: known.map_or("", |known| known.doc),
@@ -34,15 +34,6 @@ impl SettingText {
             value: setting.value(),
             min,
             max,
-        }
-    }
-
-    /// Smallest and largest value for a robot with these limits: it is never faster than its own speed.
-    pub fn range(setting: RunSetting, limits: &DriveLimits) -> (f64, f64) {
-        let (min, max) = setting.range();
-        match setting {
-            RunSetting::Speed(_) => (min, max.min(limits.v)),
-            _ => (min, max),
         }
     }
 }

@@ -34,8 +34,8 @@ const LANE_HALF_WIDTH_M: f64 = 0.2;
 #[derive(Debug)]
 pub struct Planner {
     core: PlannerCore,
-    /// Highest forward speed of the robot, m/s.
-    full_speed: f64,
+    /// The robot's own limits.
+    full: DriveLimits,
 }
 
 impl Planner {
@@ -59,7 +59,7 @@ impl Planner {
         let reach = config.curve.reach.min(LANE_HALF_WIDTH_M);
         let on_lanes = PlannerConfig { curve: CurveConfig { reach, ..config.curve }, ..config };
         Ok(Self {
-            full_speed: limits.v,
+            full: limits,
             core: PlannerCore {
                 config,
                 on_lanes,
@@ -79,7 +79,12 @@ impl Planner {
 
     /// Limits the forward speed of the next plans, m/s, above 0. The robot's own limit still applies.
     pub fn limit_speed(&mut self, speed: f64) {
-        self.core.drive.limits.v = speed.min(self.full_speed);
+        self.core.drive.limits.v = speed.min(self.full.v);
+    }
+
+    /// Limits the turn rate of the next plans, rad/s, above 0. The robot's own limit still applies.
+    pub fn limit_turn_rate(&mut self, omega: f64) {
+        self.core.drive.limits.omega = omega.min(self.full.omega);
     }
 
     /// Sets the distance from a blocked goal that still counts, m, 0 to 100, for the next plans ([`PlannerConfig::goal_tolerance`]).

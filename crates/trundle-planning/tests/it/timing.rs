@@ -86,3 +86,20 @@ fn a_speed_limit_holds_for_the_next_plans_and_never_exceeds_the_robots_own() {
     let again = found_plan(planner.plan(&hall(), start, Twist2::ZERO, goal));
     assert_eq!(again.trajectory.duration(), free.trajectory.duration());
 }
+
+#[test]
+fn a_limit_of_the_turn_rate_holds_for_the_next_plans_and_never_exceeds_the_robots_own() {
+    let (start, goal) = (Pose2::new(1.0, 1.0, 0.2), Pose2::new(8.0, 4.0, 2.0));
+    let mut planner = planner(at_home(), RADIUS);
+    let fastest = |result: &PlanResult| {
+        result.trajectory.points().iter().map(|point| point.twist.omega.abs()).fold(0.0, f64::max)
+    };
+    let free = found_plan(planner.plan(&hall(), start, Twist2::ZERO, goal));
+    planner.limit_turn_rate(0.2);
+    let slow = found_plan(planner.plan(&hall(), start, Twist2::ZERO, goal));
+    judge(&hall(), &slow, start, goal, RADIUS);
+    assert!(fastest(&slow) <= 0.2 + 1e-9 && fastest(&free) > 0.3, "{} {}", fastest(&slow), fastest(&free));
+    planner.limit_turn_rate(100.0);
+    let again = found_plan(planner.plan(&hall(), start, Twist2::ZERO, goal));
+    assert_eq!(again.trajectory.duration(), free.trajectory.duration());
+}

@@ -49,7 +49,7 @@ impl Parameters {
             } else {
                 String::new()
             };
-            let range = RunSetting::of_key(setting.key, value.double_value).map(|own| range(own, robot));
+            let range = RunSetting::of_key(setting.key, value.double_value).map(|own| own.range_within(&robot.limits));
             let description = setting.doc.to_owned();
             Some((setting.key.to_owned(), Parameter { value, description, constraints, range }))
         };
@@ -190,15 +190,6 @@ fn type_name(kind: u8) -> &'static str {
         ParameterType::PARAMETER_DOUBLE => "double, as 0.2",
         ParameterType::PARAMETER_STRING => "string",
         _ => "list",
-    }
-}
-
-/// The range of a setting of `robot`: its speed never exceeds that of the robot file.
-fn range(setting: RunSetting, robot: &RobotConfig) -> (f64, f64) {
-    let (min, max) = setting.range();
-    match setting {
-        RunSetting::Speed(_) => (min, max.min(robot.limits.v)),
-        _ => (min, max),
     }
 }
 

@@ -64,11 +64,14 @@ impl Navigator {
         self.tools.ends_without_path = ends;
     }
 
-    /// Changes a setting. A speed counts from the next plan on.
+    /// Changes a setting. Limits of speed and turn rate count from the next plan on.
     pub(crate) fn change(&mut self, setting: RunSetting) {
         match setting {
             RunSetting::Speed(speed) => self.tools.planner.planner.limit_speed(speed),
+            RunSetting::TurnRate(omega) => self.tools.planner.planner.limit_turn_rate(omega),
             RunSetting::Patience(patience) => self.tools.set_patience(patience),
+            RunSetting::ArrivalBound(distance) => self.tools.arrival.bound.distance = distance,
+            RunSetting::ArrivalHeadingBound(deg) => self.tools.arrival.bound.heading = deg.to_radians(),
         }
     }
 

@@ -5,6 +5,11 @@ use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, PoseBound, require_in};
 use trundle_planning::ExploreConfig;
 
+/// Range of the bound of an arrival's position \[m\]. Source: ours.
+pub(crate) const ARRIVAL_BOUND_RANGE_M: (f64, f64) = (0.01, 10.0);
+/// Range of the bound of an arrival's heading \[deg\]. Source: ours.
+pub(crate) const ARRIVAL_HEADING_RANGE_DEG: (f64, f64) = (1.0, 180.0);
+
 /// Settings of missions, and time limits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -54,9 +59,10 @@ impl MissionExecutorConfig {
         let (min, max) = PATIENCE_RANGE_S;
         require_in("mission_executor.patience", self.patience, "s", min, max)?;
         require_in("mission_executor.lost_sigma", self.lost_sigma, "m", 0.1, 10.0)?;
-        require_in("mission_executor.arrival_bound", self.arrival_bound, "m", 0.01, 10.0)?;
-        let heading = self.arrival_heading_bound_deg;
-        require_in("mission_executor.arrival_heading_bound_deg", heading, "deg", 1.0, 180.0)?;
+        let (min, max) = ARRIVAL_BOUND_RANGE_M;
+        require_in("mission_executor.arrival_bound", self.arrival_bound, "m", min, max)?;
+        let (heading, (min, max)) = (self.arrival_heading_bound_deg, ARRIVAL_HEADING_RANGE_DEG);
+        require_in("mission_executor.arrival_heading_bound_deg", heading, "deg", min, max)?;
         self.explore.validated()?;
         Ok(self)
     }

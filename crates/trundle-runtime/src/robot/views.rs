@@ -4,7 +4,7 @@ use super::Robot;
 use crate::{
     goal_approach::GoalApproachReport,
     mission::{Task, TaskRecord},
-    operator::RunSetting,
+    operator::RunSettings,
     stage::StageTimes,
 };
 use std::sync::Arc;
@@ -107,7 +107,7 @@ impl Robot {
     }
 
     /// Present values of the settings that may change while the robot runs.
-    pub fn run_settings(&self) -> [RunSetting; 2] {
+    pub fn run_settings(&self) -> RunSettings {
         self.settings
     }
 

@@ -113,15 +113,17 @@ fn a_mission_is_replaced_and_cancelled_and_the_report_says_so() {
 fn a_changed_setting_replaces_the_one_with_its_key() {
     let mut robot = robot(GOAL);
     let file = RobotConfig::default();
-    assert_eq!(
-        robot.run_settings(),
-        [RunSetting::Speed(file.limits.v), RunSetting::Patience(file.mission_executor.patience)]
-    );
+    let [_, turn_rate, _, ..] = RunSetting::all_of(&file);
+    assert_eq!(robot.run_settings(), RunSetting::all_of(&file));
     robot.execute(OperatorCommand::Change(RunSetting::Patience(20.0))).unwrap();
-    assert_eq!(robot.run_settings(), [RunSetting::Speed(file.limits.v), RunSetting::Patience(20.0)]);
+    let first = |robot: &Robot| {
+        let [speed, turn_rate, patience, ..] = robot.run_settings();
+        [speed, turn_rate, patience]
+    };
+    assert_eq!(first(&robot), [RunSetting::Speed(file.limits.v), turn_rate, RunSetting::Patience(20.0)]);
     robot.execute(OperatorCommand::Change(RunSetting::Speed(0.3))).unwrap();
     robot.execute(OperatorCommand::Change(RunSetting::Speed(0.2))).unwrap();
-    assert_eq!(robot.run_settings(), [RunSetting::Speed(0.2), RunSetting::Patience(20.0)]);
+    assert_eq!(first(&robot), [RunSetting::Speed(0.2), turn_rate, RunSetting::Patience(20.0)]);
 }
 
 #[test]
