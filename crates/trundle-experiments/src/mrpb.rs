@@ -55,7 +55,7 @@ impl MrpbRequest {
     /// The robot of the runs: the requested one, else the benchmark's.
     #[must_use]
     pub fn robot(&self) -> RobotConfig {
-        self.robot.clone().unwrap_or_else(robot)
+        self.robot.clone().unwrap_or_else(benchmark_robot)
     }
 }
 
@@ -113,6 +113,14 @@ impl ExperimentReport for MrpbOutcome {
         folder.write("summary.json", report::summary(trials, success).to_json().as_bytes())?;
         Ok(())
     }
+}
+
+/// The robot of the benchmark, which is certain of an arrival within the benchmark's tolerance.
+fn benchmark_robot() -> RobotConfig {
+    let mut robot = robot();
+    robot.mission_executor.arrival_bound = GOAL_TOLERANCE_M;
+    robot.mission_executor.arrival_heading_bound_deg = GOAL_TOLERANCE_RAD.to_degrees();
+    robot
 }
 
 /// The benchmark's robot as the autonomy's settings: a round two-wheeled base with a laser.
