@@ -1,6 +1,6 @@
 //! Obstacles that stand free.
 
-use super::regions::neighbours;
+use super::regions::{connected, neighbours};
 use trundle_core::{Cell, OccupancyGrid};
 
 /// The map without the groups of occupied cells that are at most `max_length` m long and wide, and stand on free floor alone.
@@ -40,31 +40,17 @@ impl Group {
 
 fn group(grid: &OccupancyGrid, start: usize, seen: &mut [bool]) -> Group {
     let geometry = grid.geometry();
-    let first = geometry.cell(start);
-    let mut group = Group {
-        cells: Vec::new(),
-        cols: (first.col, first.col),
-        rows: (first.row, first.row),
-        is_inside: true,
-        has_obstacle: false,
-    };
-    let mut open = vec![start];
     seen[start] = true;
-    while let Some(i) = open.pop() {
-        let cell = geometry.cell(i);
-        group.cells.push(i);
-        group.cols = (group.cols.0.min(cell.col), group.cols.1.max(cell.col));
-        group.rows = (group.rows.0.min(cell.row), group.rows.1.max(cell.row));
-        group.has_obstacle |= grid.cells()[i] == Cell::Occupied;
-        for near in neighbours(geometry, i) {
-            let Some(near) = near else {
-                group.is_inside = false;
-                continue;
-            };
-            if grid.cells()[near] != Cell::Free && !std::mem::replace(&mut seen[near], true) {
-                open.push(near);
-            }
-        }
+    let cells = connected(geometry, start, |i| {
+        grid.cells()[i] != Cell::Free && !std::mem::replace(&mut seen[i], true)
+    });
+    let first = geometry.cell(start);
+    let (mut cols, mut rows) = ((first.col, first.col), (first.row, first.row));
+    for cell in cells.iter().map(|i| geometry.cell(*i)) {
+        cols = (cols.0.min(cell.col), cols.1.max(cell.col));
+        rows = (rows.0.min(cell.row), rows.1.max(cell.row));
     }
-    group
+    let is_inside = cells.iter().all(|i| neighbours(geometry, *i).iter().all(Option::is_some));
+    let has_obstacle = cells.iter().any(|i| grid.cells()[*i] == Cell::Occupied);
+    Group { cells, cols, rows, is_inside, has_obstacle }
 }

@@ -1,6 +1,6 @@
 //! Pieces of wide floor, grown over the whole floor.
 
-use super::regions::{Regions, neighbours};
+use super::regions::{Regions, connected, neighbours};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use trundle_core::{Cell, OccupancyGrid};
@@ -22,15 +22,13 @@ pub(super) fn grown(floor: &OccupancyGrid, field: &DistanceField, clearance: f64
                 continue;
             }
             cells[start] = Some(count);
-            let mut open = vec![start];
-            while let Some(i) = open.pop() {
-                for near in neighbours(&geometry, i).into_iter().flatten() {
-                    if cells[near].is_none() && is_member(near) {
-                        cells[near] = Some(count);
-                        open.push(near);
-                    }
+            connected(&geometry, start, |near| {
+                let is_new = cells[near].is_none() && is_member(near);
+                if is_new {
+                    cells[near] = Some(count);
                 }
-            }
+                is_new
+            });
             count += 1;
         }
     };

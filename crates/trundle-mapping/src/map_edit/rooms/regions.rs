@@ -1,6 +1,6 @@
 //! Regions of cells, by label.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use trundle_core::GridGeometry;
 
 /// A label of each cell, or none.
@@ -83,26 +83,35 @@ impl Regions {
 
     /// The cells without a label that are connected with `start`, and the label of all cells about them if it is one.
     fn hole(&self, start: usize, seen: &mut [bool]) -> (Vec<usize>, Option<u32>) {
-        let (mut hole, mut open) = (Vec::new(), vec![start]);
-        let mut around: BTreeMap<Option<u32>, ()> = BTreeMap::new();
         seen[start] = true;
-        while let Some(i) = open.pop() {
-            hole.push(i);
-            for near in neighbours(&self.geometry, i) {
-                match near.map(|near| (near, self.cells[near])) {
-                    Some((near, None)) => {
-                        if !std::mem::replace(&mut seen[near], true) {
-                            open.push(near);
-                        }
-                    }
-                    Some((_, label)) => _ = around.insert(label, ()),
-                    None => _ = around.insert(None, ()),
-                }
-            }
-        }
-        let only = around.first_key_value().filter(|_| around.len() == 1).and_then(|(label, ())| *label);
+        let hole = connected(&self.geometry, start, |i| {
+            self.cells[i].is_none() && !std::mem::replace(&mut seen[i], true)
+        });
+        let beside = hole.iter().flat_map(|i| neighbours(&self.geometry, *i));
+        let around: BTreeSet<Option<u32>> = beside
+            .filter_map(|near| match near.map(|near| self.cells[near]) {
+                Some(None) => None,
+                Some(label) => Some(label),
+                None => Some(None),
+            })
+            .collect();
+        let only = around.first().filter(|_| around.len() == 1).copied().flatten();
         (hole, only)
     }
+}
+
+/// `start` and the cells that are connected with it by sides over cells that `enter` accepts. `enter` refuses a cell that it accepted before.
+pub(super) fn connected(
+    geometry: &GridGeometry,
+    start: usize,
+    mut enter: impl FnMut(usize) -> bool,
+) -> Vec<usize> {
+    let (mut cells, mut open) = (Vec::new(), vec![start]);
+    while let Some(i) = open.pop() {
+        cells.push(i);
+        open.extend(neighbours(geometry, i).into_iter().flatten().filter(|near| enter(*near)));
+    }
+    cells
 }
 
 /// The cells beside a cell: right, left, above, below; `None` outside the grid.
