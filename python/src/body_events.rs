@@ -8,7 +8,8 @@ use nalgebra::Matrix3;
 use numpy::{PyArray1, PyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use trundle::core::{
-    BodyEvent, BodyEventKind, Device, Invalid, Link, Odometry as CoreOdometry, PerWheel, Pose2, Stamp,
+    Battery, BodyEvent, BodyEventKind, Button, Device, DockBeams, DockInfrared, Invalid, Link,
+    Odometry as CoreOdometry, PerWheel, Pose2, PowerSource, Stamp,
 };
 
 /// Odometry computed by the body, in place of wheels and gyro.
@@ -77,7 +78,7 @@ impl Odometry {
     }
 }
 
-/// A condition of the body that stops the robot, or its end.
+/// A condition of the body: what stops the robot, its battery and charging station, and time without sensor readings.
 ///
 /// >>> trundle.BodyCondition.link(1.5, "camera", False).stamp
 /// 1.5
@@ -113,6 +114,50 @@ impl BodyCondition {
         Self::of(stamp, BodyEventKind::WheelDrop(PerWheel { left, right }))
     }
 
+    /// Whether the motor of a wheel draws too much current.
+    #[staticmethod]
+    fn over_current(stamp: f64, left: bool, right: bool) -> PyResult<Self> {
+        Self::of(stamp, BodyEventKind::OverCurrent(PerWheel { left, right }))
+    }
+
+    /// Voltage (V), charge (0 to 1; `None`: not measured), and the source of the power: "battery", "charging_station" or "adapter".
+    #[staticmethod]
+    #[pyo3(signature = (stamp, voltage, charge=None, source="battery", is_charging=false))]
+    fn battery(
+        stamp: f64,
+        voltage: f64,
+        charge: Option<f64>,
+        source: &str,
+        is_charging: bool,
+    ) -> PyResult<Self> {
+        let source = match source {
+            "battery" => PowerSource::Battery,
+            "charging_station" => PowerSource::ChargingStation,
+            "adapter" => PowerSource::Adapter,
+            other => {
+                let expected = "battery, charging_station or adapter";
+                return Err(value_error(Invalid::new("source of the power", other, "", expected)));
+            }
+        };
+        Self::of(stamp, BodyEventKind::Battery(Battery { voltage_v: voltage, charge, source, is_charging }))
+    }
+
+    /// A button of the base, from 0, is down or up.
+    #[staticmethod]
+    fn button(stamp: f64, index: i64, pressed: bool) -> PyResult<Self> {
+        let index = u8::try_from(index)
+            .map_err(|_| value_error(Invalid::new("index of the button", index, "", "0 to 255")))?;
+        Self::of(stamp, BodyEventKind::Button(Button { index, pressed }))
+    }
+
+    /// The sectors of a charging station's light that the receivers at the left, middle and right of the front detect: "near_left",
+    /// "near_center", "near_right", "far_left", "far_center", "far_right", as seen in the direction of the station's front.
+    #[staticmethod]
+    fn dock_infrared(stamp: f64, left: Vec<String>, center: Vec<String>, right: Vec<String>) -> PyResult<Self> {
+        let (left, center, right) = (beams(&left)?, beams(&center)?, beams(&right)?);
+        Self::of(stamp, BodyEventKind::DockInfrared(DockInfrared { left, center, right }))
+    }
+
     /// When it was, s.
     #[getter]
     fn stamp(&self) -> f64 {
@@ -129,6 +174,27 @@ impl BodyCondition {
         let event = BodyEvent::new(self::stamp(stamp)?, kind);
         Ok(Self { event: event.checked().map_err(value_error)? })
     }
+}
+
+/// The sectors with these names.
+fn beams(sectors: &[String]) -> PyResult<DockBeams> {
+    let mut beams = DockBeams::default();
+    for sector in sectors {
+        let beam = match sector.as_str() {
+            "near_left" => &mut beams.near_left,
+            "near_center" => &mut beams.near_center,
+            "near_right" => &mut beams.near_right,
+            "far_left" => &mut beams.far_left,
+            "far_center" => &mut beams.far_center,
+            "far_right" => &mut beams.far_right,
+            other => {
+                let expected = "near or far, then _left, _center or _right, as near_left";
+                return Err(value_error(Invalid::new("sector of the station's light", other, "", expected)));
+            }
+        };
+        *beam = true;
+    }
+    Ok(beams)
 }
 
 /// The true pose of a simulated robot, which `Robot` ignores.

@@ -61,6 +61,10 @@ def test_every_kind_of_event_is_taken(images):
         trundle.BodyCondition.silence(1.3),
         trundle.BodyCondition.link(1.4, "camera", False),
         trundle.BodyCondition.wheel_drop(1.5, True, False),
+        trundle.BodyCondition.over_current(1.5, False, True),
+        trundle.BodyCondition.battery(1.5, 15.2, charge=0.8, source="charging_station", is_charging=True),
+        trundle.BodyCondition.button(1.5, 0, True),
+        trundle.BodyCondition.dock_infrared(1.5, ["near_left"], ["far_center"], []),
         trundle.Scan(1.6, np.full(10, 2.0), 0.0, 0.1, range_max=10.0),
     ]
     for event in events:
