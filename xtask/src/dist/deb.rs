@@ -28,8 +28,20 @@ const TOOLS: [(&str, &str, &str); 2] = [
     ("dpkg-deb", "--version", "apt-get install dpkg"),
 ];
 
+/// What the package is built of.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Options {
+    /// For aarch64.
+    #[arg(long)]
+    arm64: bool,
+    /// Build profile of the program: dist, or release, which `.ci/run` has built already and which no user gets.
+    #[arg(long, default_value = super::PROFILE, conflicts_with = "arm64")]
+    profile: String,
+}
+
 /// Builds the package for this computer, or for aarch64, and checks it; skipped by name if tools are missing.
-pub fn run(root: &Path, is_arm64: bool) -> Verdict {
+pub fn run(root: &Path, options: &Options) -> Verdict {
+    let is_arm64 = options.arm64;
     let missing: Vec<_> = TOOLS.iter().filter(|(tool, argument, _)| !answers(tool, argument)).collect();
     for (tool, _, remedy) in &missing {
         println!("  skipped: the Debian package needs {tool}: {remedy}");
@@ -43,10 +55,11 @@ pub fn run(root: &Path, is_arm64: bool) -> Verdict {
     if !missing.is_empty() || !has_target {
         return Ok(true);
     }
-    let own = build(root, None)?;
+    let own =
+        if options.profile == super::PROFILE { build(root, None) } else { program::trundle(root, &options.profile) }?;
     let program = if is_arm64 { build(root, Some(TARGET))? } else { own.clone() };
     collect(root, &own, &program.with_file_name("deb"))?;
-    let package = pack(root, is_arm64)?;
+    let package = pack(root, options)?;
     println!("{}\nsha256: {}", package.display(), sha256(&package)?);
     let findings = deb_content::check(root, &package, !is_arm64)?;
     findings.iter().for_each(|finding| println!("{finding}"));
@@ -100,21 +113,25 @@ fn compress(file: &Path) -> Result<(), String> {
 }
 
 /// Packs; the package.
-fn pack(root: &Path, is_arm64: bool) -> Result<PathBuf, String> {
-    let folder = program::scratch(root, if is_arm64 { "deb-arm64" } else { "deb" })?;
+fn pack(root: &Path, options: &Options) -> Result<PathBuf, String> {
+    let folder = program::scratch(root, if options.arm64 { "deb-arm64" } else { "deb" })?;
     let out = folder.display().to_string();
     let mut args = vec![
         "deb",
         "--no-build",
         "--no-strip",
         "--profile",
-        "dist",
+        &options.profile,
         "--package",
         "trundle-cli",
         "--output",
         &out,
     ];
-    if is_arm64 {
+    if options.profile != super::PROFILE {
+        // Only its content is checked.
+        args.push("--fast");
+    }
+    if options.arm64 {
         args.extend(["--target", TARGET]);
     }
     if !program::cargo(root, &args, &[])? {

@@ -9,6 +9,8 @@ use crate::workspace::Verdict;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+/// Build profile of the program of a release.
+const PROFILE: &str = "dist";
 /// Size above which the program of a release is refused \[MB\]: above the goal of the measurement. Source: ours,
 /// `results/program-size.json` and some room.
 const MAX_SIZE_MB: f64 = 28.0;
@@ -30,14 +32,14 @@ pub fn run(root: &Path, target: Option<&str>) -> Verdict {
 /// Builds the program of a release for this computer or for `target`; its path.
 pub fn build(root: &Path, target: Option<&str>) -> Result<PathBuf, String> {
     let mut args =
-        vec!["build", "--profile", "dist", "--locked", "--package", "trundle-cli", "--features", "ros2,mqtt"];
+        vec!["build", "--profile", PROFILE, "--locked", "--package", "trundle-cli", "--features", "ros2,mqtt,tls"];
     args.extend(target.into_iter().flat_map(|target| ["--target", target]));
     let flags = flags(root)?;
     let env = [("RUSTFLAGS", flags.as_str()), ("CARGO_INCREMENTAL", "0"), crate::aarch64::LINKER_VARIABLE];
     if !program::cargo(root, &args, &env)? {
-        return Err("the program does not build in profile dist".into());
+        return Err(format!("the program does not build in profile {PROFILE}"));
     }
-    let folder = program::target(root)?.join(target.unwrap_or("")).join("dist");
+    let folder = program::target(root)?.join(target.unwrap_or("")).join(PROFILE);
     Ok(folder.join(format!("trundle{}", std::env::consts::EXE_SUFFIX)))
 }
 
