@@ -1,7 +1,7 @@
 //! Everything that must hold before a change is merged.
 
 use crate::workspace::Verdict;
-use crate::{book, fault_scenarios, fuzz, golden, packages, program, replay_check, tidy};
+use crate::{book, fault_scenarios, fuzz, golden, packages, program, replay_check, semver, tidy};
 use std::path::Path;
 use std::time::Instant;
 
@@ -16,7 +16,7 @@ const TEST: Step = Step {
     check: |root| program::cargo(root, &["test", "--workspace"], &[]),
 };
 
-const REST: [Step; 12] = [
+const REST: [Step; 13] = [
     Step {
         name: "cargo fmt --all --check",
         check: |root| program::cargo(root, &["fmt", "--all", "--check"], &[]),
@@ -28,6 +28,7 @@ const REST: [Step; 12] = [
         },
     },
     Step { name: "cargo xtask tidy", check: tidy::run },
+    Step { name: "cargo xtask semver", check: semver::run },
     Step { name: "cargo xtask packages", check: |root| packages::run(root, false) },
     Step {
         name: "RUSTDOCFLAGS=-Dwarnings cargo doc --workspace --no-deps",
@@ -37,7 +38,7 @@ const REST: [Step; 12] = [
     },
     Step { name: "cargo xtask fuzz --seconds 5", check: fuzz::run_in_ci },
     Step {
-        name: "cargo build --release --package trundle-cli --features ros2,mqtt",
+        name: "cargo build --release --package trundle-cli --features ros2,mqtt,tls",
         check: |root| program::release_trundle(root).map(|_| true),
     },
     Step { name: "cargo xtask golden", check: golden_net },

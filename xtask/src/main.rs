@@ -1,9 +1,10 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | book | golden | packages | dist | deb | reproduce | results | gallery | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | states | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | book | commands | golden | packages | dist | deb | semver | reproduce | results | gallery | pictures | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | states | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod aarch64;
 mod book;
 mod ci;
+mod command_reference;
 mod compare;
 mod dist;
 mod fault_scenarios;
@@ -18,6 +19,7 @@ mod results;
 mod robot_memory;
 mod ros_interfaces;
 mod seeds;
+mod semver;
 mod settings;
 mod states;
 mod tidy;
@@ -53,6 +55,8 @@ enum XtaskCommand {
     },
     /// Run the tested commands of docs, build the book with mdbook, and check its links. The build is skipped if mdbook is missing.
     Book,
+    /// Write docs/commands.md from the help of the release program.
+    Commands,
     /// Replace links of the book to files outside docs: called by mdbook, with its JSON on standard input.
     #[command(hide = true)]
     BookLinks {
@@ -74,11 +78,9 @@ enum XtaskCommand {
     /// Build the program of a release; print its size and checksum.
     Dist,
     /// Build the Debian package, check its content, unpack it and run its program. Skipped if tools are missing.
-    Deb {
-        /// For aarch64.
-        #[arg(long)]
-        arm64: bool,
-    },
+    Deb(dist::deb::Options),
+    /// Compare the public interfaces with those of the last tag. Skipped without a tag or cargo-semver-checks.
+    Semver,
     /// Build the committed sources at two paths: both programs must have the same bytes. Takes two builds from nothing.
     Reproduce,
     /// Pack every crate as for a registry, without network; check the packages and the facade's features.
@@ -98,9 +100,14 @@ enum XtaskCommand {
     },
     /// Write docs/gallery.md and its charts from results/*.json.
     Gallery {
-        /// Repeat the measurements and pictures of the page first: all of them, or the named ones.
+        /// Repeat the measurements of the page first: all of them, or the named ones.
         #[arg(long, value_name = "NAME", num_args = 0..)]
         measure: Option<Vec<String>>,
+    },
+    /// Draw the pictures of docs by the release program: all of them, or those whose names contain a word.
+    Pictures {
+        /// Words in the names of the pictures.
+        words: Vec<String>,
     },
     /// Write the reference of settings from the doc comments of the configuration structs.
     Settings,
@@ -147,16 +154,20 @@ fn main() -> ExitCode {
         XtaskCommand::Tidy { shrink, grow } if shrink || grow => tidy::shrink(&root, grow),
         XtaskCommand::Tidy { .. } => tidy::run(&root),
         XtaskCommand::Book => book::run(&root),
+        XtaskCommand::Commands => program::release_trundle(&root)
+            .and_then(|trundle| command_reference::run(&root, &trundle, false)),
         XtaskCommand::BookLinks { question } => book::repository_links::run(&question),
         XtaskCommand::Golden { update, only, profile } => {
             golden::run(&root, &golden::Options { update, only, profile })
         }
         XtaskCommand::Dist => dist::run(&root, None),
-        XtaskCommand::Deb { arm64 } => dist::deb::run(&root, arm64),
+        XtaskCommand::Deb(options) => dist::deb::run(&root, &options),
+        XtaskCommand::Semver => semver::run(&root),
         XtaskCommand::Reproduce => dist::reproduce::run(&root),
         XtaskCommand::Packages { every_feature } => packages::run(&root, every_feature),
         XtaskCommand::Results { measure, printed } => results::run(&root, &measure, printed.as_deref()),
         XtaskCommand::Gallery { measure } => gallery::run(&root, measure.as_deref()),
+        XtaskCommand::Pictures { words } => gallery::pictures::draw(&root, &words),
         XtaskCommand::Settings => settings::run(&root, false),
         XtaskCommand::States => states::run(&root, false),
         XtaskCommand::RosInterfaces => ros_interfaces::run(&root, false),

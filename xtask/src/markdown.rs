@@ -1,5 +1,7 @@
 //! Links, headings and code blocks of a Markdown page.
 
+use std::path::{Path, PathBuf};
+
 /// A link to a file of the repository.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Link {
@@ -32,6 +34,27 @@ pub struct Block {
     pub info: Vec<String>,
     /// Text between the fences, without the fences' indentation.
     pub text: String,
+}
+
+/// The pages in a folder and the folders below it, in order.
+pub fn pages(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let mut pages = Vec::new();
+    collect(folder, &mut pages)?;
+    pages.sort();
+    Ok(pages)
+}
+
+fn collect(folder: &Path, pages: &mut Vec<PathBuf>) -> Result<(), String> {
+    let entries = std::fs::read_dir(folder).map_err(|e| format!("cannot list {}: {e}", folder.display()))?;
+    for entry in entries {
+        let path = entry.map_err(|e| format!("cannot list {}: {e}", folder.display()))?.path();
+        if path.is_dir() {
+            collect(&path, pages)?;
+        } else if path.extension().is_some_and(|end| end == "md") {
+            pages.push(path);
+        }
+    }
+    Ok(())
 }
 
 /// Links to files in reading order. Links to web pages, and all links within code, are left out.

@@ -1,9 +1,9 @@
 //! Commands that pages of docs show: blocks of `sh tested` run, and blocks of `text output` are compared with their output.
 
 use super::page_run::PageRun;
-use crate::markdown::{Block, blocks};
+use crate::markdown::{Block, blocks, pages};
 use crate::workspace::Verdict;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A step of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,11 +16,8 @@ enum Step {
 
 /// Runs the tested commands of each page, with `trundle` first in the path. Returns whether all pages pass.
 pub fn run(root: &Path, trundle: &Path) -> Verdict {
-    let mut pages = Vec::new();
-    collect(&root.join("docs"), &mut pages)?;
-    pages.sort();
     let mut is_well = true;
-    for page in pages {
+    for page in pages(&root.join("docs"))? {
         let text =
             std::fs::read_to_string(&page).map_err(|e| format!("cannot read {}: {e}", page.display()))?;
         let name = page.strip_prefix(root).unwrap_or(&page).display().to_string();
@@ -58,19 +55,6 @@ fn step(block: &Block) -> Option<Step> {
         ["text", "output"] => Some(Step::Output),
         _ => None,
     }
-}
-
-fn collect(folder: &Path, pages: &mut Vec<PathBuf>) -> Result<(), String> {
-    let entries = std::fs::read_dir(folder).map_err(|e| format!("cannot list {}: {e}", folder.display()))?;
-    for entry in entries {
-        let path = entry.map_err(|e| format!("cannot list {}: {e}", folder.display()))?.path();
-        if path.is_dir() {
-            collect(&path, pages)?;
-        } else if path.extension().is_some_and(|end| end == "md") {
-            pages.push(path);
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

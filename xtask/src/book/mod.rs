@@ -6,13 +6,14 @@ mod html_links;
 mod page_run;
 pub mod repository_links;
 
-use crate::program;
+use crate::{command_reference, program};
 use crate::workspace::Verdict;
 use std::path::Path;
 
-/// Runs the tested commands of the pages, then builds the book and checks its links.
+/// Checks the reference of commands, runs the tested commands of the pages, then builds the book and checks its links.
 pub fn run(root: &Path) -> Verdict {
     let trundle = program::release_trundle(root)?;
+    let is_reference_new = command_reference::run(root, &trundle, true)?;
     let do_commands_pass = commands::run(root, &trundle)?;
-    Ok(build::run(root)? && do_commands_pass)
+    Ok(build::run(root)? && do_commands_pass && is_reference_new)
 }

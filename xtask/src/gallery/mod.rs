@@ -2,7 +2,7 @@
 //! from `results/*.json`.
 
 mod charts;
-mod pictures;
+pub mod pictures;
 mod sections;
 
 use crate::results::model::Measurements;
@@ -17,13 +17,13 @@ pub const PAGE: &str = "docs/gallery.md";
 
 const HEAD: &str = "# Gallery
 
-Written by `cargo xtask gallery` from `results/*.json`. `cargo xtask gallery --measure` first repeats the measurements and pictures, which
-takes some hours; `--measure NAME` repeats one. The columns are those of the [results](results.md): figures in **bold** miss their goal, the
+Written by `cargo xtask gallery` from `results/*.json`. `cargo xtask gallery --measure` first repeats the measurements, which takes
+some hours; `--measure NAME` repeats one. `cargo xtask pictures` draws the pictures. The columns are those of the [results](results.md): figures in **bold** miss their goal, the
 ratio says how many times better than the peer, and a peer marked * is a published figure, not one of the same run.
 ";
 
 /// Writes the page and its charts. With `measured`, first repeats these measurements, or all of the page if the list is empty. Returns
-/// whether all of them gave their figures and pictures; the page is written with those that did.
+/// whether all of them gave their figures; the page is written with those that did.
 pub fn run(root: &Path, measured: Option<&[String]>) -> Verdict {
     let all: Vec<String> =
         SECTIONS.iter().flat_map(|s| s.measurements).map(|name| (*name).to_owned()).collect();
@@ -41,12 +41,10 @@ pub fn run(root: &Path, measured: Option<&[String]>) -> Verdict {
     Ok(failures.is_empty())
 }
 
-/// Repeats a measurement, and takes its pictures.
+/// Repeats a measurement.
 fn repeat(root: &Path, name: &String) -> Result<(), String> {
-    if !results::run(root, std::slice::from_ref(name), None)? {
-        return Err(format!("{name}: {} is too long", results::PAGE));
-    }
-    pictures::take(root, name)
+    let is_written = results::run(root, std::slice::from_ref(name), None)?;
+    is_written.then_some(()).ok_or_else(|| format!("{name}: {} is too long", results::PAGE))
 }
 
 /// The page.
@@ -114,9 +112,6 @@ mod tests {
         for chart in charts::all(&results::read(&root).unwrap()).unwrap() {
             let name = chart["file"].as_str().unwrap();
             assert!(page.contains(&format!("(pictures/gallery/{name})")), "{name} stands nowhere");
-        }
-        for (_, _, file) in pictures::PICTURES {
-            assert!(shown.contains(&file), "{file} is drawn but not shown");
         }
     }
 

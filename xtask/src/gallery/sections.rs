@@ -59,7 +59,7 @@ The published scores are those of the simulation leaderboard of the BARN Challen
 challenge uses 50 other worlds, ten trials each, and the Gazebo simulator with a Jackal. trundle's runs use its own simulator and the 250
 published worlds.",
         pictures: &[
-            ("gallery/barn.png", "The world of the median score: cylinders, the robot's map and the driven path; a run ends within 1 m of the goal, as in the challenge"),
+            ("gallery/barn.png", "World 150 of the 250: cylinders, the robot's map and the driven path; a run ends within 1 m of the goal, as in the challenge"),
             ("gallery/barn.svg", "Mean scores: trundle in its own simulator, the others as published"),
         ],
         measurements: &["barn"],
