@@ -1,40 +1,51 @@
 //! Encryption of the page by a given certificate.
 
-#[cfg(feature = "tls")]
-pub use with_tls::Certificate;
-#[cfg(not(feature = "tls"))]
-pub use without_tls::Certificate;
+/// Certificate and key of the page. Copies share them. Without the feature `tls` no value exists.
+#[derive(Clone)]
+pub struct Certificate {
+    #[cfg(feature = "tls")]
+    acceptor: tokio_rustls::TlsAcceptor,
+    #[cfg(feature = "tls")]
+    own: tokio_rustls::rustls::pki_types::CertificateDer<'static>,
+    #[cfg(not(feature = "tls"))]
+    never: std::convert::Infallible,
+}
+
+/// A debug text must not show the key.
+impl std::fmt::Debug for Certificate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Certificate")
+    }
+}
 
 #[cfg(not(feature = "tls"))]
 mod without_tls {
     //! A build without TLS: there is no certificate.
 
+    use super::Certificate;
     use std::io;
     use tokio::net::TcpStream;
 
-    /// Certificate of the page. No value exists: this build has no feature `tls`.
-    #[derive(Debug, Clone)]
-    pub enum Certificate {}
-
     impl Certificate {
         pub(crate) fn covers(&self, _name: &str) -> bool {
-            match *self {}
+            match self.never {}
         }
 
         pub(crate) fn first_name(&self) -> Option<String> {
-            match *self {}
+            match self.never {}
         }
 
         pub(crate) async fn accept(&self, _stream: TcpStream) -> io::Result<TcpStream> {
-            match *self {}
+            match self.never {}
         }
     }
 }
 
 #[cfg(feature = "tls")]
 mod with_tls {
-    //! TLS 1.2 and 1.3 by rustls.
+    //! TLS 1.2 and 1.3 by rustls, with the cryptography of graviola, which is Rust alone.
 
+    use super::Certificate;
     use crate::LiveError;
     use std::fs::File;
     use std::io::{self, Read};
@@ -43,7 +54,6 @@ mod with_tls {
     use tokio::net::TcpStream;
     use tokio_rustls::TlsAcceptor;
     use tokio_rustls::rustls::client::verify_server_name;
-    use tokio_rustls::rustls::crypto::ring;
     use tokio_rustls::rustls::pki_types::pem::PemObject;
     use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer, ServerName};
     use tokio_rustls::rustls::server::ParsedCertificate;
@@ -56,26 +66,20 @@ mod with_tls {
     /// Protocol that the page speaks within TLS. Source: RFC 7301.
     const HTTP_1: &[u8] = b"http/1.1";
 
-    /// Certificate and key of the page. Copies share them.
-    #[derive(Clone)]
-    pub struct Certificate {
-        acceptor: TlsAcceptor,
-        own: CertificateDer<'static>,
-    }
-
     impl Certificate {
         /// The certificate of a file, with the others of its chain, and the key of another file; both are PEM.
         ///
         /// # Errors
-        /// When a file cannot be read, has another content, or the key is not that of the certificate.
+        /// When a file cannot be read, has another content, the key is not that of the certificate, or the processor cannot encrypt.
         pub fn of_files(chain: &Path, key: &Path) -> Result<Self, LiveError> {
+            require_processor()?;
             let certificates = certificates(&read(chain)?).map_err(|problem| broken(chain, problem))?;
             let own = certificates.first().cloned();
             let own = own.ok_or_else(|| broken(chain, "it has no certificate, expected a PEM file with BEGIN CERTIFICATE"))?;
             EndEntityCert::try_from(&own).map_err(|problem| broken(chain, format!("not a certificate of a server: {problem}")))?;
             let secret = PrivateKeyDer::from_pem_slice(&read(key)?);
             let secret = secret.map_err(|_| broken(key, "it has no key, expected a PEM file with BEGIN PRIVATE KEY, not encrypted"))?;
-            let config = ServerConfig::builder_with_provider(Arc::new(ring::default_provider()))
+            let config = ServerConfig::builder_with_provider(Arc::new(rustls_graviola::default_provider()))
                 .with_safe_default_protocol_versions()
                 .map_err(|problem| LiveError::System(problem.to_string()))?
                 .with_no_client_auth()
@@ -103,11 +107,35 @@ mod with_tls {
         }
     }
 
-    /// A debug text must not show the key.
-    impl std::fmt::Debug for Certificate {
-        fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-            f.write_str("Certificate")
+    /// Refuses a processor without the instructions that graviola needs (its README, "Limitations").
+    fn require_processor() -> Result<(), LiveError> {
+        #[cfg(target_arch = "x86_64")]
+        let features = [
+            ("aes", std::arch::is_x86_feature_detected!("aes")),
+            ("ssse3", std::arch::is_x86_feature_detected!("ssse3")),
+            ("avx", std::arch::is_x86_feature_detected!("avx")),
+            ("avx2", std::arch::is_x86_feature_detected!("avx2")),
+            ("adx", std::arch::is_x86_feature_detected!("adx")),
+            ("bmi2", std::arch::is_x86_feature_detected!("bmi2")),
+            ("pclmulqdq", std::arch::is_x86_feature_detected!("pclmulqdq")),
+        ];
+        #[cfg(target_arch = "aarch64")]
+        let features = [
+            ("aes", std::arch::is_aarch64_feature_detected!("aes")),
+            ("sha2", std::arch::is_aarch64_feature_detected!("sha2")),
+            ("pmull", std::arch::is_aarch64_feature_detected!("pmull")),
+            ("neon", std::arch::is_aarch64_feature_detected!("neon")),
+        ];
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+        let features = [("x86-64 or aarch64", false)];
+        let names: Vec<&str> = features.into_iter().filter_map(|(name, has)| (!has).then_some(name)).collect();
+        if names.is_empty() {
+            return Ok(());
         }
+        let names = names.join(", ");
+        Err(LiveError::System(format!(
+            "the processor lacks {names}, which encryption needs; leave --live-certificate out, and use a tunnel (ssh -L)"
+        )))
     }
 
     fn read(file: &Path) -> Result<Vec<u8>, LiveError> {
