@@ -41,6 +41,7 @@ mod free_space;
 pub mod hardware;
 mod input_warnings;
 pub mod laser_map;
+pub mod listening;
 pub mod map_edit;
 mod map_extent;
 mod mission_file;

@@ -1,8 +1,9 @@
 //! Address of the live page.
 
 use std::fmt;
-use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::net::{Ipv4Addr, SocketAddr};
 use std::str::FromStr;
+use trundle_app::listening::read_address;
 
 /// Port of the live page if none is given. Source: ours; IANA has it unassigned.
 const DEFAULT_PORT: u16 = 8642;
@@ -42,14 +43,7 @@ impl FromStr for LiveAddress {
         if text == Self::DEFAULT {
             return Ok(Self::default());
         }
-        let loopback = |port: u16| SocketAddr::from((Ipv4Addr::LOCALHOST, port));
-        let whole_ip = |ip: IpAddr| SocketAddr::from((ip, DEFAULT_PORT));
-        let socket = text.parse::<SocketAddr>();
-        let socket = socket.or_else(|_| text.parse::<u16>().map(loopback));
-        let socket = socket.or_else(|_| text.parse::<IpAddr>().map(whole_ip));
-        let socket = socket.map_err(|_| {
-            format!("'{text}': expected IP:PORT, as 127.0.0.1:8642; 0.0.0.0:8642 serves every network of this machine")
-        })?;
+        let socket = read_address(text, DEFAULT_PORT)?;
         Ok(Self { socket, takes_another_port: false })
     }
 }

@@ -1,6 +1,7 @@
 //! View of a run for its front ends.
 
 use super::DepthView;
+use nalgebra::Matrix3;
 use std::fmt;
 use std::sync::Arc;
 
@@ -85,6 +86,15 @@ impl RunView {
             counts: RunCounts::default(),
             settings: None,
         }
+    }
+
+    /// Covariance of the estimate in the map frame: x \[m\], y \[m\], heading \[rad\].
+    #[must_use]
+    pub fn map_covariance(&self) -> [[f64; 3]; 3] {
+        let (sin, cos) = self.estimate.pose.theta.sin_cos();
+        let turn = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+        let turned = turn * self.estimate.covariance * turn.transpose();
+        std::array::from_fn(|row| std::array::from_fn(|column| turned[(row, column)]))
     }
 }
 

@@ -49,7 +49,9 @@ async fn open_connection(stream: TcpStream, router: Router, certificate: Option<
     match timeout(REQUEST_TIMEOUT, certificate.accept(stream)).await {
         Ok(Ok(encrypted)) => serve_connection(encrypted, router).await,
         Ok(Err(error)) => tracing::debug!("live page: a connection was not encrypted: {error}"),
-        Err(_) => tracing::debug!("live page: a connection did not begin its encryption within {REQUEST_TIMEOUT:?}"),
+        Err(_) => {
+            tracing::debug!("live page: a connection did not begin its encryption within {REQUEST_TIMEOUT:?}")
+        }
     }
 }
 

@@ -5,8 +5,8 @@ use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
-use std::net::IpAddr;
 use std::sync::Arc;
+use trundle_app::listening::{is_own_name, name_of_host};
 
 /// Checks the Host of a request and adds the headers of every answer.
 pub async fn check(State(state): State<Arc<PageState>>, request: Request, next: Next) -> Response {
@@ -35,33 +35,8 @@ fn host_of(headers: &HeaderMap) -> Option<&str> {
 /// Whether a Host is a name of this machine, or one of its certificate. A page that rebinds its own name to this machine would send that
 /// name. An address cannot be rebound, and a browser that meets the certificate under another name opens no page.
 fn is_own_host(host: &str, state: &PageState) -> bool {
-    let Some(name) = name_of(host) else { return false };
+    let Some(name) = name_of_host(host) else { return false };
     is_own_name(name, state.is_shared) || state.certificate.as_ref().is_some_and(|own| own.covers(name))
-}
-
-/// The name or the address of a Host; `None` if its port is invalid.
-fn name_of(host: &str) -> Option<&str> {
-    let (name, port) = match host.strip_prefix('[') {
-        Some(rest) => rest.split_once(']').unwrap_or_default(),
-        None => host.split_at(host.rfind(':').unwrap_or(host.len())),
-    };
-    let is_port = |port: &str| port.strip_prefix(':').is_some_and(|port| port.parse::<u16>().is_ok());
-    (port.is_empty() || is_port(port)).then_some(name)
-}
-
-fn is_own_name(name: &str, is_shared: bool) -> bool {
-    match name.parse::<IpAddr>() {
-        Ok(address) => is_shared || address.is_loopback(),
-        Err(_) => name.eq_ignore_ascii_case("localhost") || is_shared && is_machine_name(name),
-    }
-}
-
-/// Whether a name is that of this machine, plain or on the local network.
-fn is_machine_name(name: &str) -> bool {
-    let own = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
-    let own = own.trim();
-    let plain = name.strip_suffix(".local").unwrap_or(name);
-    !own.is_empty() && plain.eq_ignore_ascii_case(own)
 }
 
 fn with_headers(mut response: Response, host: &str, is_encrypted: bool) -> Response {
@@ -94,26 +69,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_names_that_cannot_be_rebound_are_own() {
-        let is_own = |host, is_shared| name_of(host).is_some_and(|name| is_own_name(name, is_shared));
-        for own in ["127.0.0.1:8642", "localhost:8642", "LOCALHOST", "[::1]:8642", "127.9.9.9"] {
-            assert!(is_own(own, false), "{own}");
-        }
-        for foreign in [
-            "evil.example:8642",
-            "192.168.1.4:8642",
-            "",
-            "127.0.0.1.evil.example",
-            "[::2]:1",
-            "127.0.0.1:8642; x",
-            "[::1",
-        ] {
-            assert!(!is_own(foreign, false), "{foreign}");
-        }
-        assert!(is_own("192.168.1.4:8642", true) && !is_own("evil.example", true));
-    }
-
-    #[test]
     fn another_origin_and_none_are_foreign() {
         let headers = |origin: Option<&'static str>| {
             let mut headers = HeaderMap::new();
@@ -123,7 +78,10 @@ mod tests {
         };
         assert!(is_own_origin(&headers(Some("http://127.0.0.1:8642")), false));
         assert!(is_own_origin(&headers(Some("https://127.0.0.1:8642")), true));
-        assert!(!is_own_origin(&headers(Some("http://127.0.0.1:8642")), true), "a page without encryption is another one");
+        assert!(
+            !is_own_origin(&headers(Some("http://127.0.0.1:8642")), true),
+            "a page without encryption is another one"
+        );
         for foreign in [None, Some("http://evil.example"), Some("null"), Some("http://127.0.0.1:8643")] {
             assert!(!is_own_origin(&headers(foreign), false), "{foreign:?}");
         }

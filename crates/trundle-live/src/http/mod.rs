@@ -62,7 +62,10 @@ async fn open_link(
 async fn stop(State(state): State<Arc<PageState>>, headers: HeaderMap) -> Response {
     let token = headers.get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
     let access = token.and_then(|token| state.tokens.access(token.strip_prefix("Bearer ")?));
-    if !guard::is_own_origin(&headers, state.certificate.is_some()) || access != Some(Access::Drive) || !state.is_steered {
+    if !guard::is_own_origin(&headers, state.certificate.is_some())
+        || access != Some(Access::Drive)
+        || !state.is_steered
+    {
         return (StatusCode::FORBIDDEN, "this link may not stop the robot").into_response();
     }
     match state.steering.stop() {

@@ -170,15 +170,8 @@ fn mover_text(mover: &MovingObstacle) -> [f64; 5] {
     [now.x, now.y, mover.radius(), later.x, later.y]
 }
 
-/// The covariance of the estimate, turned from the base frame into the map frame.
+/// Variances and covariance of the position in the map frame, and the variance of the heading.
 fn map_covariance(view: &RunView) -> [f64; 4] {
-    let (sin, cos) = view.estimate.pose.theta.sin_cos();
-    let c = &view.estimate.covariance;
-    let (xx, xy, yy) = (c[(0, 0)], c[(0, 1)], c[(1, 1)]);
-    [
-        cos * cos * xx - 2.0 * sin * cos * xy + sin * sin * yy,
-        sin * cos * (xx - yy) + (cos * cos - sin * sin) * xy,
-        sin * sin * xx + 2.0 * sin * cos * xy + cos * cos * yy,
-        c[(2, 2)],
-    ]
+    let c = view.map_covariance();
+    [c[0][0], c[0][1], c[1][1], c[2][2]]
 }
