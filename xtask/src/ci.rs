@@ -38,7 +38,7 @@ const REST: [Step; 13] = [
     },
     Step { name: "cargo xtask fuzz --seconds 5", check: fuzz::run_in_ci },
     Step {
-        name: "cargo build --release --package trundle-cli --features ros2,mqtt,tls",
+        name: "cargo build --release --package trundle-cli --features ros2,mqtt,foxglove,tls",
         check: |root| program::release_trundle(root).map(|_| true),
     },
     Step { name: "cargo xtask golden", check: golden_net },

@@ -11,9 +11,10 @@ pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<bool, S
     Ok(status.success())
 }
 
-/// Builds the program in a profile (`release`, `dev`); its path. The program of a release has ROS 2 and MQTT.
+/// Builds the program in a profile (`release`, `dev`); its path. The program of a release has all its features.
 pub fn trundle(root: &Path, profile: &str) -> Result<PathBuf, String> {
-    let features: &[&str] = if profile == "release" { &["--features", "ros2,mqtt,tls"] } else { &[] };
+    let features: &[&str] =
+        if profile == "release" { &["--features", "ros2,mqtt,foxglove,tls"] } else { &[] };
     let build = ["build", "--profile", profile, "--package", "trundle-cli"];
     if !cargo(root, &[&build, features].concat(), &[])? {
         return Err(format!("the program does not build in profile {profile}"));

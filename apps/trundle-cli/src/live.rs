@@ -1,10 +1,12 @@
-//! Front ends of a run: --live, a page that displays the run and steers it if the command drives, and --mqtt.
+//! Front ends of a run: --live, a page that displays the run and steers it if the command drives, --mqtt and --foxglove.
 
 use crate::console;
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::operator::{FrontEnd, MapFolder, Operator, OperatorLink, operator_link, refuse_for_replay};
 use trundle::app::{AppError, Progress, RunSetup};
+#[cfg(feature = "foxglove")]
+use trundle::foxglove;
 use trundle::live::{Certificate, LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
 use trundle::runtime::RobotConfig;
 
@@ -45,6 +47,14 @@ pub struct LiveArgs {
     #[cfg(feature = "mqtt")]
     #[command(flatten)]
     pub mqtt: crate::mqtt::MqttArgs,
+    /// Show the run in Foxglove or Lichtblick, which cannot command the robot. ADDR is IP:PORT [default: 127.0.0.1:8765]
+    #[cfg(feature = "foxglove")]
+    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = foxglove::DEFAULT_ADDRESS, value_parser = foxglove::read_foxglove_address)]
+    pub foxglove: Option<std::net::SocketAddr>,
+    /// A further page that may connect, as http://localhost:8080 of a Lichtblick of your own.
+    #[cfg(feature = "foxglove")]
+    #[arg(long, value_name = "ORIGIN", requires = "foxglove", hide_short_help = true)]
+    pub foxglove_origin: Vec<foxglove::PageOrigin>,
 }
 
 /// Front ends of a run; a drop ends them.
@@ -53,6 +63,8 @@ pub struct FrontEnds {
     _page: Option<LivePage>,
     #[cfg(feature = "mqtt")]
     _fleet: Option<trundle::fleet::FleetLink>,
+    #[cfg(feature = "foxglove")]
+    _foxglove: Option<foxglove::FoxgloveServer>,
 }
 
 impl LiveArgs {
@@ -70,7 +82,7 @@ impl LiveArgs {
         self.zones.as_deref().map_or(Ok(setup.clone()), |file| setup.with_annotations_of(file))
     }
 
-    /// The requested page and broker link of a run, and the run's companions. `link` is the link of another front end. A run without an
+    /// The requested front ends of a run, and the run's companions. `link` is the link of another front end. A run without an
     /// operator accepts no commands.
     pub fn front_ends(
         &self,
@@ -82,7 +94,11 @@ impl LiveArgs {
         if !is_steered {
             refuse_for_replay(self.zones.as_deref(), self.maps.as_deref())?;
         }
-        if !self.is_operated() {
+        #[cfg(feature = "foxglove")]
+        let is_shown = self.foxglove.is_some() || self.is_operated();
+        #[cfg(not(feature = "foxglove"))]
+        let is_shown = self.is_operated();
+        if !is_shown {
             return Ok((FrontEnds::default(), FrontEnd { progress, operator: link }));
         }
         let link = link.unwrap_or_else(|| operator_link().1);
@@ -90,6 +106,9 @@ impl LiveArgs {
             _page: self.page(setup, &link, is_steered)?,
             #[cfg(feature = "mqtt")]
             _fleet: self.mqtt.join(setup, &link, is_steered)?,
+            #[cfg(feature = "foxglove")]
+            _foxglove: foxglove::FoxgloveServer::for_run(setup, &link, self.foxglove, &self.foxglove_origin)?
+                .inspect(|server| console::print(&server.announcement())),
         };
         Ok((front_ends, FrontEnd { progress, operator: Some(link) }))
     }

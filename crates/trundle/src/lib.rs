@@ -40,11 +40,12 @@
 //! | read and write files | [`io`] |
 //! | show a run in a browser | [`live`] |
 //! | join a home or a fleet by MQTT | `fleet`, with the feature `mqtt` |
+//! | show a run in Foxglove | `foxglove`, with the feature `foxglove` |
 //! | speak ROS 2 | `ros2`, with the feature `ros2` |
 //!
 //! # Features
 //!
-//! `full` is the default: all but `ros2` and `mqtt`. Without it, `slam`, `mapping`, `estimation`, `planning`, `control`, `docking`, `surface`,
+//! `full` is the default: all but `ros2`, `mqtt` and `foxglove`. Without it, `slam`, `mapping`, `estimation`, `planning`, `control`, `docking`, `surface`,
 //! `sim`, `drivers`, `io`, `eval` and `viz` are the modules of these names, with the modules that they need. `runtime` is the whole robot
 //! without simulator. `core` is always there. No feature changes a result.
 //!
@@ -69,6 +70,8 @@ pub use trundle_eval as eval;
 pub use trundle_experiments as experiments;
 #[cfg(feature = "mqtt")]
 pub use trundle_fleet as fleet;
+#[cfg(feature = "foxglove")]
+pub use trundle_foxglove as foxglove;
 #[cfg(any(feature = "mapping", feature = "planning"))]
 pub use trundle_grid as grid;
 #[cfg(feature = "io")]

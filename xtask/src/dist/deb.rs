@@ -55,8 +55,11 @@ pub fn run(root: &Path, options: &Options) -> Verdict {
     if !missing.is_empty() || !has_target {
         return Ok(true);
     }
-    let own =
-        if options.profile == super::PROFILE { build(root, None) } else { program::trundle(root, &options.profile) }?;
+    let own = if options.profile == super::PROFILE {
+        build(root, None)
+    } else {
+        program::trundle(root, &options.profile)
+    }?;
     let program = if is_arm64 { build(root, Some(TARGET))? } else { own.clone() };
     collect(root, &own, &program.with_file_name("deb"))?;
     let package = pack(root, options)?;

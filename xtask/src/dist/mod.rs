@@ -31,8 +31,16 @@ pub fn run(root: &Path, target: Option<&str>) -> Verdict {
 
 /// Builds the program of a release for this computer or for `target`; its path.
 pub fn build(root: &Path, target: Option<&str>) -> Result<PathBuf, String> {
-    let mut args =
-        vec!["build", "--profile", PROFILE, "--locked", "--package", "trundle-cli", "--features", "ros2,mqtt,tls"];
+    let mut args = vec![
+        "build",
+        "--profile",
+        PROFILE,
+        "--locked",
+        "--package",
+        "trundle-cli",
+        "--features",
+        "ros2,mqtt,foxglove,tls",
+    ];
     args.extend(target.into_iter().flat_map(|target| ["--target", target]));
     let flags = flags(root)?;
     let env = [("RUSTFLAGS", flags.as_str()), ("CARGO_INCREMENTAL", "0"), crate::aarch64::LINKER_VARIABLE];

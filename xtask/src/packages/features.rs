@@ -13,7 +13,7 @@ const ABSENT: [(&str, &[&str]); 5] = [
 ];
 /// Features that each check builds alone: those that a user of one algorithm chooses.
 const ALGORITHM_FEATURES: [&str; 5] = ["slam", "mapping", "planning", "docking", "sim"];
-/// Features that a release builds alone as well. `full` is what the workspace builds, `ros2` and `mqtt` are the program's.
+/// Features that a release builds alone as well. `full` is what the workspace builds, `ros2`, `mqtt`, `foxglove` and `tls` are the program's.
 const OTHER_FEATURES: [&str; 9] =
     ["", "estimation", "control", "surface", "drivers", "io", "eval", "viz", "runtime"];
 
@@ -66,9 +66,12 @@ mod tests {
         let text =
             std::fs::read_to_string(crate::workspace::root().join("crates/trundle/Cargo.toml")).unwrap();
         let manifest: toml::Table = text.parse().unwrap();
-        let listed =
-            [&ALGORITHM_FEATURES[..], &OTHER_FEATURES, &["default", "full", "ros2", "mqtt", "kinect2-usb"]]
-                .concat();
+        let listed = [
+            &ALGORITHM_FEATURES[..],
+            &OTHER_FEATURES,
+            &["default", "full", "ros2", "mqtt", "foxglove", "tls", "kinect2-usb"],
+        ]
+        .concat();
         for feature in manifest["features"].as_table().unwrap().keys() {
             assert!(listed.contains(&feature.as_str()), "{feature}");
         }

@@ -19,6 +19,8 @@ pub const EDGES: [&str; 5] = ["trundle-sim", "trundle-io", "trundle-drivers", "t
 /// Crates that may read TOML or command lines.
 const SETTINGS_CRATES: [&str; 6] =
     ["trundle-runtime", "trundle-app", "trundle-cli", "trundle-io", "trundle-fuzz", "xtask"];
+/// Crates that speak HTTP.
+const HTTP_CRATES: [&str; 2] = ["trundle-live", "trundle-foxglove"];
 /// Packages with HTTP.
 const HTTP_PACKAGES: [&str; 5] = ["axum", "hyper", "hyper-util", "tokio", "tokio-tungstenite"];
 
@@ -56,9 +58,10 @@ fn check_package(tree: &Tree, package: &Package) -> Vec<Finding> {
                 );
                 findings.push(Finding::error(&path, line, message));
             }
-            if HTTP_PACKAGES.contains(&dependency.as_str()) && name != "trundle-live" {
-                let message =
-                    format!("{name} must not depend on {dependency}: only trundle-live speaks HTTP");
+            if HTTP_PACKAGES.contains(&dependency.as_str()) && !HTTP_CRATES.contains(&name.as_str()) {
+                let message = format!(
+                    "{name} must not depend on {dependency}: only trundle-live and trundle-foxglove speak HTTP"
+                );
                 findings.push(Finding::error(&path, line, message));
             }
         }
@@ -84,6 +87,7 @@ fn is_known(name: &str) -> bool {
             "trundle-ros2",
             "trundle-live",
             "trundle-fleet",
+            "trundle-foxglove",
             "trundle",
             "trundle-cli",
             "trundle-python",
@@ -95,9 +99,10 @@ fn is_known(name: &str) -> bool {
         .contains(&name)
 }
 
-/// The simulator as the body of the app's examples and tests; output folders for the runs behind the live page's tests.
+/// The simulator as the body of the app's examples and tests; output folders for the runs behind the tests of front ends.
 fn may_test_with(from: &str, to: &str, kind: &str) -> bool {
-    let pairs = [("trundle-app", "trundle-sim"), ("trundle-live", "trundle-io")];
+    let pairs =
+        [("trundle-app", "trundle-sim"), ("trundle-live", "trundle-io"), ("trundle-foxglove", "trundle-io")];
     kind == "dev-dependencies" && pairs.contains(&(from, to))
 }
 
@@ -126,6 +131,7 @@ fn may_know(from: &str, to: &str) -> bool {
         }
         "trundle-live" => base || ["trundle-planning", "trundle-runtime", "trundle-app"].contains(&to),
         "trundle-fleet" => base || ["trundle-runtime", "trundle-app", "trundle-viz"].contains(&to),
+        "trundle-foxglove" => base || ["trundle-runtime", "trundle-app"].contains(&to),
         "trundle" => !["trundle", "trundle-cli"].contains(&to),
         "trundle-cli" | "trundle-fuzz" => to == "trundle",
         "trundle-python" => ["trundle", "trundle-cli"].contains(&to),
