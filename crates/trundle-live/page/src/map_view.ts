@@ -336,13 +336,17 @@ export class MapView {
     }
   }
 
+  /** A path through points, without those less than a pixel from the one before. The last point belongs to it. */
   private line(points: ArrayLike<number>): void {
     const { context } = this;
     context.beginPath();
+    let [lastX, lastY] = [Infinity, Infinity];
     for (let i = 0; i + 1 < points.length; i += 2) {
       const [x, y] = this.toScreen([points[i]!, points[i + 1]!]);
+      if (Math.abs(x - lastX) + Math.abs(y - lastY) < devicePixelRatio && i + 3 < points.length) continue;
       if (i === 0) context.moveTo(x, y);
       else context.lineTo(x, y);
+      [lastX, lastY] = [x, y];
     }
   }
 

@@ -1,9 +1,11 @@
 // The tiles of the map as pictures: 8 x 8 tiles share one canvas, so that a large map is few pictures.
 
+import { ChunkPainter } from "./chunk_painter";
 import { TILE_CELLS, type Point, type TileMessage } from "./wire";
 
 const CHUNK_TILES = 8;
-const CHUNK_CELLS = CHUNK_TILES * TILE_CELLS;
+/** Cells along a side of a picture. */
+export const CHUNK_CELLS = CHUNK_TILES * TILE_CELLS;
 
 export interface Chunk {
   column: number;
@@ -22,6 +24,7 @@ export class Tiles {
   private generation = -1;
   private readonly chunks = new Map<string, Chunk>();
   private readonly cells = new Map<string, { column: number; row: number; cells: Uint8Array }>();
+  private readonly painter = new ChunkPainter();
   private readonly image = new ImageData(TILE_CELLS, TILE_CELLS);
   /** The colour of free cells beside unknown ones. */
   private frontier: Rgba = [128, 128, 128, 255];
@@ -97,16 +100,16 @@ export class Tiles {
   /** Draws what is visible. `toScreen` gives the place of a point of the map frame, `scale` pixels a metre. */
   draw(context: CanvasRenderingContext2D, toScreen: (p: Point) => Point, scale: number): void {
     const side = CHUNK_CELLS * this.resolution;
-    context.imageSmoothingEnabled = scale * this.resolution < 1.5;
-    context.imageSmoothingQuality = "medium";
+    const size = side * scale;
     const { width, height } = context.canvas;
+    this.painter.begin(size);
     for (const chunk of this.chunks.values()) {
       const corner: Point = [this.origin[0] + chunk.column * side, this.origin[1] + (chunk.row + 1) * side];
       const [x, y] = toScreen(corner);
-      const size = side * scale;
       if (x > width || y > height || x + size < 0 || y + size < 0) continue;
-      context.drawImage(chunk.canvas, x, y, size, size);
+      this.painter.draw(context, chunk, x, y);
     }
+    this.painter.end();
   }
 
   private paint(column: number, row: number, cells: Uint8Array): void {
