@@ -516,6 +516,61 @@ await check("features over the camera's image, and the time of the stages", asyn
   return stages.split("\n").slice(0, 2).join(" ");
 });
 
+/** Pixels of a plot that differ from its ground. */
+const plotted = (i) =>
+  page.evaluate((i) => {
+    const canvas = document.querySelectorAll(".plot canvas")[i];
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    return data.filter((value, k) => k % 4 === 3 && value > 0).length;
+  }, i);
+
+await check("plots of speed, bounds of the pose and load of the stages, in words too", async () => {
+  const words = () => page.locator(".plot canvas").evaluateAll((all) => all.map((canvas) => canvas.getAttribute("aria-label")));
+  await page.locator("#plots-card").scrollIntoViewIfNeeded();
+  const expected = [
+    /^Speed, now: measured -?[\d.]+ m\/s, commanded -?[\d.]+ m\/s$/,
+    /^Position, now: 95 % radius [\d.]+ c?m$/,
+    /^Heading, now: 95 % bound [\d.]+°$/,
+    /^Load of a core, now: SLAM [\d.]+ %, map [\d.]+ %, plan [\d.]+ %, control [\d.]+ %$/,
+  ];
+  await until("numbers", async () => (await words()).every((text, i) => expected[i].test(text)));
+  for (let i = 0; i < expected.length; i++) assert((await plotted(i)) > 300, `plot ${i} is empty`);
+  const radius = await page.evaluate(() => window.trundle.moments.list.at(-1).numbers.position);
+  const [xx, xy, yy] = await page.evaluate(() => window.trundle.moments.list.at(-1).numbers.covariance);
+  const sigma = Math.sqrt((xx + yy) / 2 + Math.hypot((xx - yy) / 2, xy));
+  assert(Math.abs(radius - 2.448 * sigma) < 1e-9, `${radius} m for a standard deviation of ${sigma} m`);
+  await picture("plots");
+  return (await words()).join("; ");
+});
+
+await check("the time line moves pose, ellipse, path, state and plots back", async () => {
+  const past = () => page.evaluate(() => window.trundle.map.past);
+  await until("three seconds of moments", () => page.evaluate(() => {
+    const { list } = window.trundle.moments;
+    const known = list.filter((moment) => moment.numbers);
+    return known.length > 0 && known.at(-1).time - known[0].time > 3;
+  }));
+  await page.locator(".plot canvas").first().focus();
+  for (let i = 0; i < 2; i++) await page.keyboard.press("ArrowLeft");
+  const shown = await past();
+  const same = await page.evaluate((time) => {
+    const moment = window.trundle.moments.at(time);
+    return { pose: moment.pose, covariance: moment.numbers.covariance, state: window.trundle.moments.stateAt(time) };
+  }, shown.time);
+  assert.deepEqual([shown.pose, shown.covariance], [same.pose, same.covariance]);
+  assert(await page.locator("#past-flag").isVisible(), "the time is named above the map");
+  assert.equal((await text(page, "past-state")).toLowerCase(), same.state.name);
+  assert.equal(await page.locator("#past-reason").textContent(), same.state.reason ?? "");
+  const words = await page.locator(".plot canvas").nth(1).getAttribute("aria-label");
+  assert.match(words, /^Position, \d+ s ago: 95 % radius [\d.]+ c?m$/);
+  assert.match(await page.locator("#past").getAttribute("aria-valuetext"), /^\d+ s ago, \w+/);
+  await picture("past");
+  await page.keyboard.press("End");
+  assert.equal(await past(), null);
+  assert.equal(await page.locator("#past-flag").isVisible(), false);
+  return `${words}; ${same.state.name}, ${same.state.reason ?? "no reason"}`;
+});
+
 /** Number of pixels of the depth image that are drawn with a depth. */
 const depths = (page) =>
   page.evaluate(() => {

@@ -4,7 +4,9 @@ import { Annotations } from "./annotations";
 import { drawDepth, drawFeatures, drawImage } from "./camera";
 import { Link, type LinkState } from "./link";
 import { MapView, type Layers } from "./map_view";
-import { addToLog, element, Panel } from "./panel";
+import { Moments } from "./moments";
+import { addToLog, element, markLog, Panel } from "./panel";
+import { Plots } from "./plots";
 import { Teleop } from "./teleop";
 import { mapNames, saveMap } from "./map_files";
 import { SeriesCard } from "./series";
@@ -16,14 +18,21 @@ import { Timeline } from "./timeline";
 import { MapTools, type Tool } from "./tools";
 import type { ByteMessage, Pose, Reply, RobotState, Setting, Welcome } from "./wire";
 
-startTheme(() => map.recolor());
+startTheme(() => {
+  map.recolor();
+  plots.draw();
+});
 const canvas = element<HTMLCanvasElement>("map");
 const map = new MapView(canvas);
 const space = new SpaceView(element<HTMLCanvasElement>("space"), map);
 const panel = new Panel();
-const timeline = new Timeline((pose) => {
-  map.past = pose;
+const moments = new Moments();
+const plots = new Plots(moments, (time) => timeline.look(time));
+const timeline = new Timeline(moments, (time, moment) => {
+  map.past = moment && { time: time!, pose: moment.pose, covariance: moment.numbers?.covariance ?? null };
   map.dirty();
+  plots.mark(time);
+  markLog(time);
 });
 /** Way of the map for a press of an arrow key [pixels]. */
 const PAN_PX = 80;
@@ -48,7 +57,7 @@ const settings = new Settings(async (message) => (await link.ask(message)).refus
 const recording = new RecordingSwitch((on) => void request({ type: "record", on }));
 const series = new SeriesCard(() => {
   map.forgetRun();
-  timeline.begin(new Float32Array());
+  beginMoments(new Float32Array());
 });
 const tools = new MapTools(canvas, map, () => state?.pose[2] ?? 0, annotations.tool, {
   onPlace: (pose) => annotations.newPlace(pose),
@@ -57,8 +66,13 @@ const tools = new MapTools(canvas, map, () => state?.pose[2] ?? 0, annotations.t
 });
 const teleop = new Teleop(element("stick"), element("knob"), (v, omega) => link.send({ type: "drive", v, omega }));
 
-/** For tests in a browser, and for the curious: the map, and a place of the window where a wall is drawn. */
-const inspected: { map: MapView; wallPixel: typeof wallPixel; settings: Setting[] } = { map, wallPixel, settings: [] };
+/** For tests in a browser, and for the curious: the map, the last minutes, and a place of the window where a wall is drawn. */
+const inspected: { map: MapView; moments: Moments; wallPixel: typeof wallPixel; settings: Setting[] } = {
+  map,
+  moments,
+  wallPixel,
+  settings: [],
+};
 Object.assign(window, { trundle: inspected });
 
 map.onMove = placeOverlays;
@@ -86,8 +100,9 @@ function onReply(reply: Reply): void {
     case "state":
       state = reply;
       map.setState(reply);
-      panel.show(reply, welcome?.max_v ?? 1);
-      timeline.add(reply);
+      panel.show(reply);
+      if (moments.add(reply)) plots.draw();
+      timeline.moved();
       showWheel(reply);
       showPause(reply);
       showLoops(reply);
@@ -107,7 +122,7 @@ function onReply(reply: Reply): void {
       break;
     case "states":
       addToLog(reply.states, (time) => timeline.look(time));
-      timeline.addStates(reply.states);
+      moments.states.push(...reply.states);
       break;
     case "refused":
       toast(reply.refusal, "warn");
@@ -131,7 +146,7 @@ function onBytes(message: ByteMessage): void {
       break;
     case "trail":
       map.setTrail(message.poses);
-      timeline.begin(message.poses);
+      beginMoments(message.poses);
       break;
     case "visual":
       map.setVisualMap(message.keyframes, message.landmarks);
@@ -146,6 +161,12 @@ function onBytes(message: ByteMessage): void {
       drawDepth(message);
       break;
   }
+}
+
+/** The time line begins anew, with the path that was driven before. */
+function beginMoments(poses: Float32Array): void {
+  moments.begin(poses);
+  timeline.look(null);
 }
 
 // ---- requests
@@ -229,6 +250,8 @@ function connectButtons(): void {
   press("theme", () => {
     toggleTheme();
     map.recolor();
+    plots.draw();
+    timeline.draw();
   });
   press("fit", () => {
     map.fit();

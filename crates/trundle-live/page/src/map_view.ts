@@ -3,6 +3,7 @@
 import { Tiles } from "./tiles";
 import { colors, type Colors } from "./theme";
 import { ZoneLayer, type ZoneScene } from "./zone_layer";
+import { positionEllipse, type Covariance } from "./uncertainty";
 import type { Point, Pose, RobotState, Welcome } from "./wire";
 
 /** Limits of the zoom [pixels a metre]. */
@@ -14,6 +15,9 @@ const GLIDE_S = 0.08;
 const JUMP_M = 0.5;
 /** Time for which a closed loop is shown without the landmarks [s]. */
 const SHOWN_LOOP_S = 8;
+
+/** Strength of the part of the path that was driven after the time that is looked at. */
+const LATER_ALPHA = 0.3;
 
 export interface Layers {
   scan: boolean;
@@ -30,6 +34,14 @@ export interface Layers {
 export interface Ghost {
   pose: Pose;
   kind: "goal" | "pose";
+}
+
+/** What is shown of a time of the past. */
+export interface Past {
+  time: number;
+  pose: Pose;
+  /** null where it is not known. */
+  covariance: Covariance | null;
 }
 
 export interface Scene {
@@ -58,8 +70,8 @@ export class MapView {
   readonly zones: ZoneScene = { zones: [], places: [], draft: null, hidden: 0 };
   follows = true;
   ghost: Ghost | null = null;
-  /** Where the robot stood at a time of the past that is looked at. */
-  past: Pose | null = null;
+  /** The time of the past that is looked at. */
+  past: Past | null = null;
   /** Called after each change of the view, for what is placed by the map's frame. */
   onMove: () => void = () => {};
   private readonly context: CanvasRenderingContext2D;
@@ -76,6 +88,8 @@ export class MapView {
   private plan = new Float32Array();
   private waypoints = new Float32Array();
   private trail: number[] = [];
+  /** Time of each point of the trail [s]. */
+  private trailTimes: number[] = [];
   private isDirty = true;
   private isFitted = false;
   /** Whether the map is shown as a whole while it grows, until a person moves it. */
@@ -99,8 +113,14 @@ export class MapView {
     this.state = state;
     const [x, y] = state.pose;
     const n = this.trail.length;
-    if (n === 0 || Math.hypot(x - this.trail[n - 2]!, y - this.trail[n - 1]!) > 0.02) this.trail.push(x, y);
-    if (this.trail.length > 12000) this.trail.splice(0, 2000);
+    if (n === 0 || Math.hypot(x - this.trail[n - 2]!, y - this.trail[n - 1]!) > 0.02) {
+      this.trail.push(x, y);
+      this.trailTimes.push(state.time);
+    }
+    if (this.trail.length > 12000) {
+      this.trail.splice(0, 2000);
+      this.trailTimes.splice(0, 1000);
+    }
     this.dirty();
   }
 
@@ -124,6 +144,7 @@ export class MapView {
   /** Another run is shown: path, scan, plan and landmarks were those of the last one. */
   forgetRun(): void {
     this.trail = [];
+    this.trailTimes = [];
     this.scan = this.plan = this.waypoints = this.keyframes = this.landmarks = new Float32Array();
     this.past = null;
     this.isFitted = false;
@@ -133,7 +154,11 @@ export class MapView {
   /** The path driven before this page came: x, y, heading and time of each point. */
   setTrail(poses: Float32Array): void {
     this.trail = [];
-    for (let i = 0; i + 3 < poses.length; i += 4) this.trail.push(poses[i]!, poses[i + 1]!);
+    this.trailTimes = [];
+    for (let i = 0; i + 3 < poses.length; i += 4) {
+      this.trail.push(poses[i]!, poses[i + 1]!);
+      this.trailTimes.push(poses[i + 3]!);
+    }
     this.dirty();
   }
 
@@ -305,9 +330,9 @@ export class MapView {
     if (this.state?.station) this.drawStation(this.state.station);
     this.drawMovers();
     this.drawGoals();
-    if (this.state && this.layers.sigma) this.drawSigma(this.state);
+    if (this.layers.sigma) this.drawSigma();
     if (this.drawn) this.drawRobot(this.drawn, this.past ? 0.3 : 1);
-    if (this.past) this.drawRobot(this.past, 1);
+    if (this.past) this.drawRobot(this.past.pose, 1);
     if (this.ghost) this.drawGhost(this.ghost);
   }
 
@@ -350,13 +375,21 @@ export class MapView {
     }
   }
 
+  /** The driven path; of a time of the past, the part that was driven later is faint. */
   private drawTrail(): void {
     const { context } = this;
     context.lineJoin = context.lineCap = "round";
     context.strokeStyle = this.colors.trail;
     context.lineWidth = 2 * devicePixelRatio;
-    this.line(this.trail);
+    const later = this.past ? this.trailTimes.findIndex((time) => time > this.past!.time) : -1;
+    const count = later < 0 ? this.trail.length : 2 * later;
+    this.line(this.trail.slice(0, count));
     context.stroke();
+    if (later < 0) return;
+    context.globalAlpha = LATER_ALPHA;
+    this.line(this.trail.slice(Math.max(0, count - 2)));
+    context.stroke();
+    context.globalAlpha = 1;
   }
 
   private drawPlan(): void {
@@ -455,27 +488,26 @@ export class MapView {
   }
 
   /** The ellipse that holds the position with 95 %, and the wedge of the heading. */
-  private drawSigma(state: RobotState): void {
+  private drawSigma(): void {
     const { context } = this;
-    if (!this.drawn) return;
-    const [xx, xy, yy, heading] = state.covariance;
-    const mean = (xx + yy) / 2;
-    const half = Math.hypot((xx - yy) / 2, xy);
-    const axis = (v: number) => 2.45 * Math.sqrt(Math.max(0, v)) * this.scale * devicePixelRatio;
-    const [a, b] = [axis(mean + half), axis(mean - half)];
-    if (!Number.isFinite(a) || a > 5000) return;
-    const [x, y] = this.toScreen([this.drawn[0], this.drawn[1]]);
+    const pose = this.past ? this.past.pose : this.drawn;
+    const covariance = this.past ? this.past.covariance : this.state?.covariance;
+    if (!pose || !covariance) return;
+    const unit = this.scale * devicePixelRatio;
+    const { long, short, direction } = positionEllipse(covariance);
+    if (!Number.isFinite(long) || long * unit > 5000) return;
+    const [x, y] = this.toScreen([pose[0], pose[1]]);
     context.save();
     context.translate(x, y);
     context.fillStyle = this.colors.sigma;
     context.beginPath();
-    context.ellipse(0, 0, Math.max(a, 1), Math.max(b, 1), -0.5 * Math.atan2(2 * xy, xx - yy), 0, 2 * Math.PI);
+    context.ellipse(0, 0, Math.max(long * unit, 1), Math.max(short * unit, 1), -direction, 0, 2 * Math.PI);
     context.fill();
-    const spread = Math.min(Math.PI / 2, 2 * Math.sqrt(Math.max(0, heading)));
-    const length = (this.reach() + 0.5) * this.scale * devicePixelRatio;
+    const spread = Math.min(Math.PI / 2, 2 * Math.sqrt(Math.max(0, covariance[3])));
+    const length = (this.reach() + 0.5) * unit;
     context.beginPath();
     context.moveTo(0, 0);
-    context.arc(0, 0, length, -this.drawn[2] - spread, -this.drawn[2] + spread);
+    context.arc(0, 0, length, -pose[2] - spread, -pose[2] + spread);
     context.fill();
     context.restore();
   }

@@ -27,8 +27,6 @@ export const TONES: Record<string, Tone> = {
 const RATE_PERIOD_S = 1;
 /** Number of stages that are shown. */
 const SHOWN_STAGES = 6;
-/** Time that the plot of the speed shows [s]. */
-const PLOT_S = 60;
 
 export function element<T extends HTMLElement = HTMLElement>(id: string): T {
   const found = document.getElementById(id);
@@ -43,17 +41,15 @@ function setText(id: string, text: string): void {
 
 export class Panel {
   private rated: Pick<RobotState, "time" | "counts" | "stages"> | null = null;
-  private speeds: { time: number; measured: number; commanded: number }[] = [];
   private spoken = "";
   private tasks = "";
 
-  show(state: RobotState, maxSpeed: number): void {
+  show(state: RobotState): void {
     this.showStatus(state);
     this.showTasks(state);
     this.showNumbers(state);
     this.showRates(state);
     this.showBattery(state);
-    this.plot(state, maxSpeed);
   }
 
   /** The first line of the page: what the robot does, and why it does not move on. */
@@ -146,52 +142,21 @@ export class Panel {
     battery.dataset["tone"] = level < 0.15 ? "bad" : level < 0.3 ? "warn" : "good";
     battery.title = `${state.voltage.toFixed(1)} V`;
   }
+}
 
-  /** Measured and commanded speed of the last minute. */
-  private plot(state: RobotState, maxSpeed: number): void {
-    const speeds = this.speeds;
-    if (speeds.length > 0 && state.time < speeds[speeds.length - 1]!.time) speeds.length = 0;
-    speeds.push({ time: state.time, measured: state.twist[0], commanded: state.command[0] });
-    while (speeds.length > 0 && speeds[0]!.time < state.time - PLOT_S) speeds.shift();
-    const canvas = element<HTMLCanvasElement>("plot");
-    const width = Math.round(canvas.clientWidth * devicePixelRatio);
-    const height = Math.round(canvas.clientHeight * devicePixelRatio);
-    if (width === 0) return;
-    if (canvas.width !== width) canvas.width = width;
-    if (canvas.height !== height) canvas.height = height;
-    const context = canvas.getContext("2d")!;
-    context.clearRect(0, 0, width, height);
-    const style = getComputedStyle(canvas);
-    const pad = 6 * devicePixelRatio;
-    const lowest = Math.min(0, ...speeds.map((s) => Math.min(s.measured, s.commanded)));
-    const at = (time: number, v: number): [number, number] => [
-      width - ((state.time - time) / PLOT_S) * width,
-      height - pad - ((v - lowest) / (maxSpeed - lowest)) * (height - 2 * pad),
-    ];
-    const line = (of: (s: (typeof speeds)[number]) => number, color: string, lineWidth: number) => {
-      context.beginPath();
-      speeds.forEach((s, i) => (i === 0 ? context.moveTo(...at(s.time, of(s))) : context.lineTo(...at(s.time, of(s)))));
-      context.strokeStyle = color;
-      context.lineWidth = lineWidth * devicePixelRatio;
-      context.stroke();
-    };
-    context.globalAlpha = 0.5;
-    line(() => 0, style.getPropertyValue("--edge"), 1);
-    line((s) => s.commanded, style.getPropertyValue("--map-plan"), 1.2);
-    context.globalAlpha = 1;
-    line((s) => s.measured, style.getPropertyValue("--accent"), 1.8);
-  }
+/** A text that begins as a sentence does. */
+export function sentence(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
 /** The state and its reason in words. What holds the wheels comes first. */
 function words(state: RobotState): [string, string] {
-  const name = state.state.charAt(0).toUpperCase() + state.state.slice(1);
+  const name = sentence(state.state);
   const isMoving = Math.hypot(...state.command) > 0;
   if (state.paused && isMoving) return ["Driven by hand", "The mission waits."];
   if (state.paused) return ["Paused", "The wheels are held. Continue, or give a new task."];
   if (state.hold) return ["Held", state.hold];
-  const first = state.left[0]?.text ?? "";
-  const task = first.charAt(0).toUpperCase() + first.slice(1);
+  const task = sentence(state.left[0]?.text ?? "");
   if (state.reason) return [name, state.reason];
   return [name, state.state === "idle" || state.state === "arrived" ? "" : task];
 }
@@ -202,7 +167,7 @@ function item(kind: string, mark: string, text: string): HTMLElement {
   const sign = document.createElement("i");
   sign.textContent = mark;
   const words = document.createElement("span");
-  words.textContent = text.charAt(0).toUpperCase() + text.slice(1);
+  words.textContent = sentence(text);
   line.append(sign, words);
   return line;
 }
@@ -215,17 +180,25 @@ export function addToLog(states: StateEntry[], look: (time: number) => void): vo
     const time = document.createElement("time");
     time.textContent = clock(state.time);
     const words = document.createElement("div");
-    words.textContent = state.name.charAt(0).toUpperCase() + state.name.slice(1);
+    words.textContent = sentence(state.name);
     if (state.reason) {
       const reason = document.createElement("span");
       reason.textContent = ` ${state.reason}`;
       words.append(reason);
     }
     line.append(time, words);
+    line.dataset["time"] = String(state.time);
     line.addEventListener("click", () => look(state.time));
     log.prepend(line);
   }
   while (log.children.length > 200) log.lastElementChild?.remove();
+}
+
+/** Marks the state of a time in what happened; null marks none. */
+export function markLog(time: number | null): void {
+  const lines = [...element("log").children] as HTMLElement[];
+  const current = time === null ? undefined : lines.find((line) => Number(line.dataset["time"]) <= time);
+  lines.forEach((line) => (line === current ? line.setAttribute("aria-current", "time") : line.removeAttribute("aria-current")));
 }
 
 function clock(seconds: number): string {

@@ -1,91 +1,66 @@
-// The last ten minutes: where the robot stood and what it did, on a line to scroll back.
+// The time line of the last ten minutes: what the robot did, and where it stood.
 
-import { element, TONES } from "./panel";
-import type { Pose, RobotState, StateEntry } from "./wire";
-
-/** Time that the line covers [s]. */
-const LENGTH_S = 600;
-/** Time between two moments that are kept [s]. */
-const PERIOD_S = 0.2;
-
-interface Moment {
-  time: number;
-  pose: Pose;
-}
+import type { Moment, Moments } from "./moments";
+import { element, sentence, TONES } from "./panel";
 
 export class Timeline {
-  private moments: Moment[] = [];
-  private states: StateEntry[] = [];
-  private now = 0;
   private drawn = 0;
   /** The time that is looked at; null: now. */
   private at: number | null = null;
   private readonly slider = element<HTMLInputElement>("past");
 
-  constructor(private readonly onLook: (pose: Pose | null) => void) {
+  /** `onLook`: a time is looked at, and the moment at it; null: now. */
+  constructor(
+    private readonly moments: Moments,
+    private readonly onLook: (time: number | null, moment: Moment | null) => void,
+  ) {
     this.slider.addEventListener("input", () => this.onInput());
     element("past-now").addEventListener("click", () => this.look(null));
+    element("past-back").addEventListener("click", () => this.look(null));
   }
 
-  /** The path before this page came: x, y, heading and time of each point. */
-  begin(poses: Float32Array): void {
-    this.moments = [];
-    this.states = [];
-    for (let i = 0; i + 3 < poses.length; i += 4) {
-      this.moments.push({ time: poses[i + 3]!, pose: [poses[i]!, poses[i + 1]!, poses[i + 2]!] });
-    }
-    this.look(null);
+  /** The moments have grown. */
+  moved(): void {
+    const { now } = this.moments;
+    if (now - this.drawn >= 1 || now < this.drawn) this.draw();
   }
 
-  addStates(states: StateEntry[]): void {
-    this.states.push(...states);
-  }
-
-  add(state: RobotState): void {
-    this.now = state.time;
-    const last = this.moments[this.moments.length - 1];
-    if (!last || state.time - last.time >= PERIOD_S) this.moments.push({ time: state.time, pose: state.pose });
-    const first = this.moments.findIndex((moment) => moment.time >= this.now - LENGTH_S);
-    if (first > 50) this.moments.splice(0, first);
-    if (this.now - this.drawn >= 1 || this.now < this.drawn) this.draw();
-  }
-
-  /** Shows where the robot stood at a time; null shows now. */
+  /** Shows a time of the past; null shows now. */
   look(time: number | null): void {
     this.at = time;
-    const moment = time === null ? null : this.moments.findLast((moment) => moment.time <= time);
-    this.onLook(moment?.pose ?? null);
+    this.onLook(time, time === null ? null : (this.moments.at(time) ?? null));
     this.showText();
     if (time === null) this.slider.value = "0";
-  }
-
-  private get length(): number {
-    const first = Math.min(this.moments[0]?.time ?? this.now, this.states[0]?.time ?? this.now);
-    return Math.max(10, Math.min(LENGTH_S, this.now - first));
+    else this.slider.value = String(time - this.moments.now);
   }
 
   private onInput(): void {
     const back = -Number(this.slider.value);
-    this.look(back < 0.5 ? null : this.now - back);
+    this.look(back < 0.5 ? null : this.moments.now - back);
   }
 
+  /** The state at the time with its reason: above the map, beside the line, and for a person who listens. */
   private showText(): void {
     const isNow = this.at === null;
     element("past-now").hidden = isNow;
-    const state = this.at === null ? null : this.states.findLast((state) => state.time <= this.at!);
-    const back = this.at === null ? 0 : this.now - this.at;
-    const text = isNow ? "now" : `${back.toFixed(0)} s ago${state ? `: ${state.name}` : ""}`;
-    element("past-text").textContent = text;
-    this.slider.setAttribute("aria-valuetext", text);
+    element("past-flag").hidden = isNow;
+    const state = this.at === null ? undefined : this.moments.stateAt(this.at);
+    const back = this.at === null ? "now" : `${(this.moments.now - this.at).toFixed(0)} s ago`;
+    const name = state ? sentence(state.name) : "";
+    element("past-text").textContent = back;
+    element("past-when").textContent = back;
+    element("past-state").textContent = name;
+    element("past-reason").textContent = state?.reason ?? "";
+    this.slider.setAttribute("aria-valuetext", [back, name, state?.reason].filter(Boolean).join(", "));
   }
 
   /** The states as colours along the line. */
   draw(): void {
-    this.drawn = this.now;
-    const length = this.length;
+    const { now, length, states } = this.moments;
+    this.drawn = now;
     this.slider.min = String(-length);
     if (this.at !== null) {
-      this.slider.value = String(this.at - this.now);
+      this.slider.value = String(this.at - now);
       this.showText();
     }
     const canvas = element<HTMLCanvasElement>("past-line");
@@ -95,10 +70,10 @@ export class Timeline {
     const context = canvas.getContext("2d")!;
     context.clearRect(0, 0, width, canvas.height);
     const style = getComputedStyle(canvas);
-    const x = (time: number) => width * (1 - (this.now - time) / length);
-    this.states.forEach((state, i) => {
-      const end = this.states[i + 1]?.time ?? this.now;
-      if (end < this.now - length) return;
+    const x = (time: number) => width * (1 - (now - time) / length);
+    states.forEach((state, i) => {
+      const end = states[i + 1]?.time ?? now;
+      if (end < now - length) return;
       const tone = TONES[state.name] ?? "idle";
       context.fillStyle = style.getPropertyValue(tone === "busy" ? "--accent" : `--${tone}`);
       const from = Math.max(0, x(state.time));

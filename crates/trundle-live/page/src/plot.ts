@@ -1,0 +1,195 @@
+// A plot of numbers over time with its legend. Lines differ in colour and dashes.
+
+import type { Moment, Numbers } from "./moments";
+
+export interface Line {
+  name: string;
+  /** A colour of the style sheet. */
+  color: string;
+  dash: number[];
+  of: (numbers: Numbers) => number;
+}
+
+export interface PlotFacts {
+  title: string;
+  /** Class of the runs that have it. */
+  audience: string;
+  lines: Line[];
+  /** Whether the area below the first line is filled, as that of a bound. */
+  isFilled: boolean;
+  /** The unit of its scale, and the least upper end of the scale in it. */
+  unit: number;
+  least: number;
+  text: (value: number) => string;
+}
+
+/** The part of time that is shown, and the time that is looked at. */
+export interface PlotWindow {
+  from: number;
+  to: number;
+  now: number;
+  at: number | null;
+}
+
+const HEIGHT_PX = 62;
+/** Space above and below the lines, and below for the times [pixels]. */
+const PAD_PX = 5;
+const TIMES_PX = 13;
+
+export class Plot {
+  readonly canvas = document.createElement("canvas");
+  private readonly values: HTMLElement[] = [];
+
+  constructor(
+    parent: HTMLElement,
+    private readonly facts: PlotFacts,
+  ) {
+    const figure = document.createElement("figure");
+    figure.className = `plot ${facts.audience}`;
+    const caption = document.createElement("figcaption");
+    const title = document.createElement("strong");
+    title.textContent = facts.title;
+    caption.append(title, ...facts.lines.map((line) => this.legend(line)));
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-description", "The arrow keys move the time line, End goes back to now.");
+    figure.append(caption, this.canvas);
+    parent.append(figure);
+  }
+
+  /** The time at a place of the window [CSS pixels]. */
+  timeAt(x: number, { from, to }: PlotWindow): number {
+    const box = this.canvas.getBoundingClientRect();
+    return from + ((x - box.left) / Math.max(1, box.width)) * (to - from);
+  }
+
+  draw(moments: Moment[], window: PlotWindow): void {
+    const known = moments.flatMap(({ time, numbers }) => (numbers ? [{ time, values: this.facts.lines.map((line) => line.of(numbers)) }] : []));
+    const shown = known.filter(({ time }) => time >= window.from && time <= window.to);
+    this.showValues(shown, window);
+    const context = this.begin();
+    if (!context) return;
+    const style = getComputedStyle(this.canvas);
+    const all = shown.flatMap(({ values }) => values.filter(Number.isFinite));
+    const { unit, least } = this.facts;
+    const top = unit * roundUp(Math.max(least, ...all.map((value) => value / unit)));
+    const lowest = Math.min(0, ...all);
+    const bottom = lowest < -0.01 * top ? -unit * roundUp(-lowest / unit) : 0;
+    const height = HEIGHT_PX - PAD_PX - TIMES_PX;
+    const x = (time: number) => ((time - window.from) / (window.to - window.from)) * this.canvas.clientWidth;
+    const y = (value: number) => PAD_PX + height - ((value - bottom) / (top - bottom)) * height;
+    this.drawScale(context, style, [bottom, 0, top], y);
+    this.drawTimes(context, style, window);
+    this.facts.lines.forEach((line, i) => {
+      const points = shown.map(({ time, values }): [number, number] => [x(time), y(values[i]!)]);
+      context.strokeStyle = context.fillStyle = style.getPropertyValue(line.color);
+      if (this.facts.isFilled && i === 0) fill(context, points, y(0));
+      stroke(context, points, line.dash);
+    });
+    if (window.at !== null) this.drawCursor(context, style, x(window.at));
+  }
+
+  private legend(line: Line): HTMLElement {
+    const entry = document.createElement("span");
+    const mark = document.createElement("i");
+    mark.style.borderTopColor = `var(${line.color})`;
+    mark.style.borderTopStyle = line.dash.length === 0 ? "solid" : line.dash[0]! > 2 ? "dashed" : "dotted";
+    const value = document.createElement("b");
+    this.values.push(value);
+    entry.append(mark, line.name, " ", value);
+    return entry;
+  }
+
+  /** The values at the time that is looked at: in the legend, and in words. */
+  private showValues(shown: { time: number; values: number[] }[], { at, now }: PlotWindow): void {
+    const moment = at === null ? shown.at(-1) : shown.findLast(({ time }) => time <= at);
+    const texts = this.facts.lines.map((_, i) => {
+      const value = moment?.values[i] ?? NaN;
+      return Number.isFinite(value) ? this.facts.text(value) : "–";
+    });
+    texts.forEach((text, i) => this.values[i]!.textContent !== text && (this.values[i]!.textContent = text));
+    const words = this.facts.lines.map((line, i) => `${line.name} ${texts[i] === "–" ? "not known" : texts[i]}`).join(", ");
+    const when = at === null ? "now" : `${(now - at).toFixed(0)} s ago`;
+    this.canvas.setAttribute("aria-label", `${this.facts.title}, ${when}: ${words}`);
+  }
+
+  private begin(): CanvasRenderingContext2D | null {
+    const ratio = devicePixelRatio;
+    const [width, height] = [Math.round(this.canvas.clientWidth * ratio), Math.round(HEIGHT_PX * ratio)];
+    if (width === 0) return null;
+    if (this.canvas.width !== width) this.canvas.width = width;
+    if (this.canvas.height !== height) this.canvas.height = height;
+    const context = this.canvas.getContext("2d")!;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, width, height);
+    return context;
+  }
+
+  private drawScale(context: CanvasRenderingContext2D, style: CSSStyleDeclaration, at: number[], y: (v: number) => number): void {
+    const width = this.canvas.clientWidth;
+    context.font = "10px system-ui, sans-serif";
+    context.textBaseline = "middle";
+    context.lineWidth = 1;
+    for (const value of new Set(at)) {
+      const row = Math.round(y(value)) + 0.5;
+      context.strokeStyle = style.getPropertyValue("--edge");
+      context.beginPath();
+      context.moveTo(0, row);
+      context.lineTo(width, row);
+      context.stroke();
+      context.fillStyle = style.getPropertyValue("--soft");
+      context.textAlign = "left";
+      if (value !== 0) context.fillText(this.facts.text(value), 3, value > 0 ? row + 7 : row - 7);
+    }
+  }
+
+  private drawTimes(context: CanvasRenderingContext2D, style: CSSStyleDeclaration, { from, to, now }: PlotWindow): void {
+    const text = (time: number) => (now - time < 0.5 ? "now" : `−${(now - time).toFixed(0)} s`);
+    context.fillStyle = style.getPropertyValue("--soft");
+    context.textBaseline = "bottom";
+    context.fillText(text(from), 3, HEIGHT_PX);
+    context.textAlign = "right";
+    context.fillText(text(to), this.canvas.clientWidth - 3, HEIGHT_PX);
+  }
+
+  private drawCursor(context: CanvasRenderingContext2D, style: CSSStyleDeclaration, x: number): void {
+    context.strokeStyle = style.getPropertyValue("--text");
+    context.lineWidth = 1.5;
+    context.beginPath();
+    context.moveTo(x, 0);
+    context.lineTo(x, HEIGHT_PX - TIMES_PX);
+    context.stroke();
+  }
+}
+
+/** The least of 1, 2 and 5 times a power of ten that is not less than a value. */
+function roundUp(value: number): number {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= value * (1 - 1e-9)) ?? value;
+}
+
+/** Draws a line through points; a gap where a value is not known. */
+function stroke(context: CanvasRenderingContext2D, points: [number, number][], dash: number[]): void {
+  context.beginPath();
+  let isDrawing = false;
+  for (const [x, y] of points) {
+    if (Number.isFinite(y) && isDrawing) context.lineTo(x, y);
+    else if (Number.isFinite(y)) context.moveTo(x, y);
+    isDrawing = Number.isFinite(y);
+  }
+  context.lineWidth = 1.6;
+  context.setLineDash(dash);
+  context.stroke();
+  context.setLineDash([]);
+}
+
+function fill(context: CanvasRenderingContext2D, points: [number, number][], base: number): void {
+  if (points.length < 2) return;
+  context.beginPath();
+  context.moveTo(points[0]![0], base);
+  points.forEach(([x, y]) => context.lineTo(x, y));
+  context.lineTo(points.at(-1)![0], base);
+  context.globalAlpha = 0.2;
+  context.fill();
+  context.globalAlpha = 1;
+}
