@@ -15,9 +15,11 @@ type Answer = { refusal?: string; goal?: number };
 /** Wait before the first new attempt, and the longest one [ms]. */
 const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 5000;
-/** Without any message for this time the link counts as lost [ms]: the server sends something each second while the robot steps. */
+/** Without any message for this time the link counts as lost [ms], also while it is opened: the server sends something each second while the robot steps. */
 const SILENCE_MS = 8000;
 
+/** Close code of a link that ended without a close. */
+const NO_CLOSE = 1006;
 /** Close code of a program that has ended as it should. */
 const PROGRAM_ENDED = 1001;
 
@@ -44,10 +46,11 @@ export class Link {
     this.events.onState("connecting", "");
     const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
     this.socket = socket;
+    this.heard = performance.now();
     socket.binaryType = "arraybuffer";
     socket.onopen = () => this.send({ type: "hello", version: WIRE_VERSION, token: this.token, name: this.name });
-    socket.onmessage = (event) => this.receive(event.data as string | ArrayBuffer);
-    socket.onclose = (event) => this.onClose(socket, event);
+    socket.onmessage = (event) => socket === this.socket && this.receive(event.data as string | ArrayBuffer);
+    socket.onclose = (event) => this.onClose(socket, event.code, event.reason);
   }
 
   /** Whether messages arrive. */
@@ -109,21 +112,25 @@ export class Link {
     this.events.onReply(reply);
   }
 
-  private onClose(socket: WebSocket, event: CloseEvent): void {
+  private onClose(socket: WebSocket, code: number, reason: string): void {
     if (socket !== this.socket) return;
     this.socket = null;
     this.waiting.forEach((resolve) => resolve({ refusal: "The link to the robot was lost." }));
     this.waiting.clear();
-    if (event.code === 4401) return this.events.onState("refused", event.reason);
-    if (event.code === 4406) return location.reload();
-    this.hasEnded ||= event.code === PROGRAM_ENDED;
-    this.events.onState(this.hasEnded ? "ended" : "lost", event.reason);
+    if (code === 4401) return this.events.onState("refused", reason);
+    if (code === 4406) return location.reload();
+    this.hasEnded ||= code === PROGRAM_ENDED;
+    this.events.onState(this.hasEnded ? "ended" : "lost", reason);
     setTimeout(() => this.socket || this.connect(), this.wait);
     this.wait = Math.min(2 * this.wait, LONGEST_WAIT_MS);
   }
 
+  /** Gives a silent link up at once: a network that is gone never confirms its close. */
   private checkSilence(): void {
-    if (this.isOpen && performance.now() - this.heard > SILENCE_MS) this.socket?.close();
+    const { socket } = this;
+    if (!socket || performance.now() - this.heard < SILENCE_MS) return;
+    this.onClose(socket, NO_CLOSE, "");
+    socket.close();
   }
 
   private hurry(): void {

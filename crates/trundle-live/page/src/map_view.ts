@@ -382,12 +382,11 @@ export class MapView {
     context.strokeStyle = this.colors.trail;
     context.lineWidth = 2 * devicePixelRatio;
     const later = this.past ? this.trailTimes.findIndex((time) => time > this.past!.time) : -1;
-    const count = later < 0 ? this.trail.length : 2 * later;
-    this.line(this.trail.slice(0, count));
+    this.line(later < 0 ? this.trail : this.trail.slice(0, 2 * later));
     context.stroke();
     if (later < 0) return;
     context.globalAlpha = LATER_ALPHA;
-    this.line(this.trail.slice(Math.max(0, count - 2)));
+    this.line(this.trail.slice(Math.max(0, 2 * later - 2)));
     context.stroke();
     context.globalAlpha = 1;
   }

@@ -63,9 +63,9 @@ export class Plot {
     return from + ((x - box.left) / Math.max(1, box.width)) * (to - from);
   }
 
+  /** Draws the moments of a window. */
   draw(moments: Moment[], window: PlotWindow): void {
-    const known = moments.flatMap(({ time, numbers }) => (numbers ? [{ time, values: this.facts.lines.map((line) => line.of(numbers)) }] : []));
-    const shown = known.filter(({ time }) => time >= window.from && time <= window.to);
+    const shown = moments.flatMap(({ time, numbers }) => (numbers ? [{ time, values: this.facts.lines.map((line) => line.of(numbers)) }] : []));
     this.showValues(shown, window);
     const context = this.begin();
     if (!context) return;
@@ -78,8 +78,8 @@ export class Plot {
     const height = HEIGHT_PX - PAD_PX - TIMES_PX;
     const x = (time: number) => ((time - window.from) / (window.to - window.from)) * this.canvas.clientWidth;
     const y = (value: number) => PAD_PX + height - ((value - bottom) / (top - bottom)) * height;
-    this.drawScale(context, style, [bottom, 0, top], y);
-    this.drawTimes(context, style, window);
+    const marks = [...new Set([bottom, 0, top])];
+    this.drawScale(context, style, marks.map(y));
     this.facts.lines.forEach((line, i) => {
       const points = shown.map(({ time, values }): [number, number] => [x(time), y(values[i]!)]);
       context.strokeStyle = context.fillStyle = style.getPropertyValue(line.color);
@@ -87,6 +87,7 @@ export class Plot {
       stroke(context, points, line.dash);
     });
     if (window.at !== null) this.drawCursor(context, style, x(window.at));
+    this.drawWords(context, style, marks.filter((value) => value !== 0), y, window);
   }
 
   private legend(line: Line): HTMLElement {
@@ -125,31 +126,35 @@ export class Plot {
     return context;
   }
 
-  private drawScale(context: CanvasRenderingContext2D, style: CSSStyleDeclaration, at: number[], y: (v: number) => number): void {
-    const width = this.canvas.clientWidth;
-    context.font = "10px system-ui, sans-serif";
-    context.textBaseline = "middle";
+  private drawScale(context: CanvasRenderingContext2D, style: CSSStyleDeclaration, rows: number[]): void {
     context.lineWidth = 1;
-    for (const value of new Set(at)) {
-      const row = Math.round(y(value)) + 0.5;
-      context.strokeStyle = style.getPropertyValue("--edge");
-      context.beginPath();
-      context.moveTo(0, row);
-      context.lineTo(width, row);
-      context.stroke();
-      context.fillStyle = style.getPropertyValue("--soft");
-      context.textAlign = "left";
-      if (value !== 0) context.fillText(this.facts.text(value), 3, value > 0 ? row + 7 : row - 7);
+    context.strokeStyle = style.getPropertyValue("--edge");
+    context.beginPath();
+    for (const row of rows) {
+      context.moveTo(0, Math.round(row) + 0.5);
+      context.lineTo(this.canvas.clientWidth, Math.round(row) + 0.5);
     }
+    context.stroke();
   }
 
-  private drawTimes(context: CanvasRenderingContext2D, style: CSSStyleDeclaration, { from, to, now }: PlotWindow): void {
-    const text = (time: number) => (now - time < 0.5 ? "now" : `−${(now - time).toFixed(0)} s`);
-    context.fillStyle = style.getPropertyValue("--soft");
-    context.textBaseline = "bottom";
-    context.fillText(text(from), 3, HEIGHT_PX);
-    context.textAlign = "right";
-    context.fillText(text(to), this.canvas.clientWidth - 3, HEIGHT_PX);
+  /** The ends of the scale and the times, over the lines with a rim of the ground. */
+  private drawWords(context: CanvasRenderingContext2D, style: CSSStyleDeclaration, values: number[], y: (v: number) => number, window: PlotWindow): void {
+    const { from, to, now } = window;
+    const time = (time: number) => (now - time < 0.5 ? "now" : `−${(now - time).toFixed(0)} s`);
+    context.font = "10px system-ui, sans-serif";
+    context.textBaseline = "middle";
+    context.lineJoin = "round";
+    context.lineWidth = 3;
+    context.strokeStyle = style.getPropertyValue("--plot-ground");
+    context.fillStyle = style.getPropertyValue("--text");
+    const write = (text: string, x: number, row: number, align: CanvasTextAlign) => {
+      context.textAlign = align;
+      context.strokeText(text, x, row);
+      context.fillText(text, x, row);
+    };
+    for (const value of values) write(this.facts.text(value), 3, y(value) + (value > 0 ? 8 : -7), "left");
+    write(time(from), 3, HEIGHT_PX - 6, "left");
+    write(time(to), this.canvas.clientWidth - 3, HEIGHT_PX - 6, "right");
   }
 
   private drawCursor(context: CanvasRenderingContext2D, style: CSSStyleDeclaration, x: number): void {

@@ -87,7 +87,9 @@ export class Plots {
   }
 
   draw(): void {
-    this.plots.forEach((plot) => plot.draw(this.moments.list, this.window));
+    const { window } = this;
+    const shown = this.moments.list.filter(({ time }) => time >= window.from && time <= window.to);
+    this.plots.forEach((plot) => plot.draw(shown, window));
   }
 
   /** The last minute, or a minute around a time before it. */
