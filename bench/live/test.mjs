@@ -8,6 +8,7 @@ import { connect, createServer as createTcpServer } from "node:net";
 import { cpus, loadavg, tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
+import { differences, measure, referenceOf } from "./pictures.mjs";
 import { start, startCommand } from "./program.mjs";
 import { framesOf, median } from "./trace.mjs";
 
@@ -15,9 +16,11 @@ const [trundle, chromiumPath, pictures = mkdtempSync(join(tmpdir(), "live-pictur
 for (const file of [trundle, chromiumPath])
   if (!file || !existsSync(file)) throw new Error(`usage: node test.mjs TRUNDLE CHROMIUM [PICTURES]: there is no file ${file}`);
 /** Longest wait for a condition [s], also of Playwright itself. */
-const PATIENCE_S = 60;
+const PATIENCE_S = 120;
 /** Longest wait for the end of a drive [s]: without fresh images the robot waits, and on a loaded machine it often does. */
-const DRIVE_S = 240;
+const DRIVE_S = 400;
+/** Silence after which the server lets a viewer go [s]. */
+const SILENCE_S = 60;
 /** Load a core above which a robot that waits for its own images is starved by other processes, and a check of its motion says nothing. */
 const OVERLOAD = 4;
 /** Attempts at a figure: the least one is judged, because a loaded machine only adds to it. */
@@ -26,16 +29,21 @@ const ATTEMPTS = 5;
 const DEPTH_KIND = 8;
 /** Period of the views that the page gets [s]. */
 const VIEW_PERIOD_S = 0.1;
+/** A folder whose page is shown instead of the one in the program, to try a page without a build of the program. */
+const assets = process.env.LIVE_ASSETS;
 mkdirSync(pictures, { recursive: true });
 const place = mkdtempSync(join(tmpdir(), "live-run-"));
 mkdirSync(join(place, "maps"));
-const browser = await chromium.launch({ executablePath: chromiumPath, args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
+// A browser does not know where a page of a folder comes from, and would keep it from the robot.
+const args = ["--no-sandbox", "--enable-unsafe-swiftshader", ...(assets ? ["--disable-features=LocalNetworkAccessChecks"] : [])];
+const browser = await chromium.launch({ executablePath: chromiumPath, args });
 const problems = [];
 
 /** A page whose console must stay clean, and the states that it is sent. */
 async function open(link, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "dark", ...options });
   context.setDefaultTimeout(1000 * PATIENCE_S);
+  if (assets) await context.route(/\/(page\.(js|css))?$/, (route) => showAsset(route));
   const page = await context.newPage();
   const watch = { page, context, state: null, states: [], depths: 0, mayFail: false };
   page.on("console", (message) => {
@@ -53,6 +61,14 @@ async function open(link, options = {}) {
   );
   await page.goto(link);
   return watch;
+}
+
+/** The program's answer with a file of the folder of assets. */
+async function showAsset(route) {
+  const name = new URL(route.request().url()).pathname.slice(1) || "index.html";
+  const response = await route.fetch();
+  const { "content-length": _, ...headers } = response.headers();
+  await route.fulfill({ response, headers, body: readFileSync(join(assets, name)) });
 }
 
 async function until(what, is, seconds = PATIENCE_S) {
@@ -83,10 +99,11 @@ const text = (page, id) => page.locator(`#${id}`).innerText();
 const speed = (watch) => Math.hypot(...watch.state.command);
 let failures = 0;
 
-/** A way to the program that carries so many bytes per second. */
+/** A way to the program that carries so many bytes per second. `mute` lets the present connections carry nothing more, without a close. */
 async function throttle(url, bytesPerSecond) {
   const TICK_MS = 50;
   const sockets = new Set();
+  const timers = new Set();
   const server = createTcpServer((client) => {
     const robot = connect(Number(url.port), url.hostname);
     const slowly = (from, to) => {
@@ -101,6 +118,7 @@ async function throttle(url, bytesPerSecond) {
         if (part.length) to.write(part);
         if (waiting.length <= 16_000) from.resume();
       }, TICK_MS);
+      timers.add(timer);
       from.on("error", () => {});
       from.on("close", () => (clearInterval(timer), to.end(waiting)));
     };
@@ -110,7 +128,8 @@ async function throttle(url, bytesPerSecond) {
   });
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
   const close = () => (sockets.forEach((socket) => socket.destroy()), server.close());
-  return { link: `http://127.0.0.1:${server.address().port}/${url.hash}`, close };
+  const mute = () => timers.forEach(clearInterval);
+  return { link: `http://127.0.0.1:${server.address().port}/${url.hash}`, close, mute };
 }
 
 async function check(name, work) {
@@ -127,7 +146,7 @@ async function check(name, work) {
     // What follows begins without keys that are down, and without other pages.
     await page.keyboard.up("w");
     await page.keyboard.press("Escape");
-    for (const context of browser.contexts()) if (context !== main.context) await context.close();
+    for (const context of browser.contexts()) if (!kept.has(context)) await context.close();
   }
 }
 
@@ -137,7 +156,18 @@ const quiet = ["--direct", "--goal", "0.2,0,0", "--zones", zones, "--maps", join
 let program = await start(trundle, ["--live", "127.0.0.1:0", "--live-tokens", tokens, ...quiet], join(place, "run"));
 const main = await open(program.drive);
 const { page } = main;
-const picture = (name, of = page) => of.screenshot({ path: join(pictures, `${name}.png`) });
+/** The page that measures pictures, so that a page that drives has no load of it. */
+const gauge = await (await browser.newContext()).newPage();
+/** Contexts that a failed check leaves open. */
+const kept = new Set([main.context, gauge.context()]);
+/** The pictures so far by their names. */
+const taken = new Map();
+/** The states whose pictures are compared with references. */
+const STATES = ["goal", "refused", "explore-dark", "explore-light", "sim", "slam", "experiment"];
+const picture = async (name, of = page) => {
+  if (STATES.includes(name)) await of.evaluate(() => document.getElementById("side").scrollTo(0, 0));
+  taken.set(name, await of.screenshot({ path: join(pictures, `${name}.png`) }));
+};
 
 await check("the page loads and says what the robot does", async () => {
   await until("a state", () => main.state !== null);
@@ -185,6 +215,9 @@ await check("a click sends a goal and the robot arrives", async () => {
   return `${(1000 * away).toFixed(0)} mm from the goal after ${seconds.toFixed(1)} s`;
 });
 
+/** Waits for a refusal beside the map; it stays for seconds only, its text stays in the page. */
+const refusal = (pattern) => until(`a refusal like ${pattern}`, async () => pattern.test(await page.locator("#bubble").textContent()));
+
 await check("a goal in a wall is refused with the reason beside the click", async () => {
   await page.keyboard.press("0");
   await settled();
@@ -192,9 +225,38 @@ await check("a goal in a wall is refused with the reason beside the click", asyn
   assert(wall, "a wall is in sight");
   await page.keyboard.press("g");
   await page.mouse.click(wall[0], wall[1]);
-  await page.locator("#bubble").waitFor({ state: "visible" });
-  assert.match(await text(page, "bubble"), /obstacle reaches \d+ cm/);
+  await refusal(/obstacle reaches \d+ cm/);
   await picture("refused");
+});
+
+await check("a picture of a blank page, another theme or a missing part differs from its reference", async () => {
+  const known = referenceOf("refused", await measure(gauge, taken.get("refused")));
+  // The page refuses further style elements.
+  const show = (style) =>
+    page.evaluate((style) => {
+      const sheet = new CSSStyleSheet();
+      sheet.replaceSync(style);
+      document.adoptedStyleSheets = [sheet];
+    }, style);
+  const found = {};
+  const damages = {
+    "a blank page": "body > * { visibility: hidden !important; }",
+    "no panel": "#side { visibility: hidden !important; }",
+    "no map": "#map { visibility: hidden !important; }",
+    "no stop": "#stop { visibility: hidden !important; }",
+    "no style": "* { all: revert !important; }",
+  };
+  for (const [name, style] of Object.entries(damages)) {
+    await show(style);
+    found[name] = differences(await measure(gauge, await page.screenshot()), known);
+  }
+  await show("");
+  await page.locator("#theme").click();
+  found["another theme"] = differences(await measure(gauge, await page.screenshot()), known);
+  await page.locator("#theme").click();
+  const missed = Object.keys(found).filter((name) => found[name].length === 0);
+  assert.deepEqual(missed, [], "damages that the comparison does not see");
+  return Object.entries(found).map(([name, all]) => `${name}: ${all.length} parts`).join(", ");
 });
 
 /** Places of the window for points of the robot's frame. */
@@ -227,8 +289,7 @@ await check("a no-go zone is drawn, kept in its file, and no goal is set in it",
   const [inside] = await windowOf([[0.8, 0]]);
   await page.keyboard.press("g");
   await page.mouse.click(...inside);
-  await page.locator("#bubble").waitFor({ state: "visible" });
-  assert.match(await text(page, "bubble"), /no-go zone 'rug'/);
+  await refusal(/no-go zone 'rug'/);
   await picture("zone-refused");
 });
 
@@ -277,7 +338,7 @@ await check("a zone whose sides cross is refused beside the drawing, and a zone 
   await page.locator("#note-form button[type=submit]").click();
   await page.locator("#note-problem").waitFor({ state: "visible" });
   assert.match(await text(page, "note-problem"), /crossed by itself/);
-  assert.match(await text(page, "bubble"), /crossed by itself/);
+  await refusal(/crossed by itself/);
   await picture("zone-crossed");
   await page.locator("#note-cancel").click();
   await page.locator("#notes li", { hasText: "rug" }).getByText("Edit").click();
@@ -324,18 +385,20 @@ await check("a setting changes within its range, and is refused beyond it", asyn
   await form.locator("button").click();
   await form.locator(".problem").waitFor({ state: "visible" });
   assert.match(await form.locator(".problem").innerText(), /99 m\/s, expected 0.05 to/);
-  const present = await page.evaluate(() => window.trundle.settings?.find((setting) => setting.key === "limits.v_m_s")?.value);
+  const value = () => page.evaluate(() => window.trundle.settings.find((setting) => setting.key === "limits.v_m_s")?.value);
+  await until("the present value", async () => (await value()) !== undefined);
+  const present = await value();
   await form.locator("input").fill(String(present));
   await form.locator("button").click();
   await until("no refusal", async () => !(await form.locator(".problem").isVisible()));
 });
 
 await check("the map is saved as files", async () => {
-  const names = [];
-  page.on("download", (download) => names.push(download.suggestedFilename()));
+  const names = new Set();
+  page.on("download", (download) => names.add(download.suggestedFilename()));
   await page.locator("#map-save").click();
-  await until("three files", () => names.length === 3);
-  assert.deepEqual(names.sort(), ["map.pgm", "map.yaml", "zones.geojson"]);
+  await until("three files", () => names.size === 3);
+  assert.deepEqual([...names].sort(), ["map.pgm", "map.yaml", "zones.geojson"]);
 });
 
 await check("a map of the folder is loaded by two presses, and the robot gets its pose", async () => {
@@ -352,8 +415,12 @@ await check("a map of the folder is loaded by two presses, and the robot gets it
   await page.waitForTimeout(300);
   assert(!main.state.reason?.includes("map"), "one press does nothing");
   const before = main.states.length;
-  await page.locator("#map-load").click();
-  await until("an unknown pose", () => main.states.slice(before).some(({ state }) => state.covariance[0] > 0.5));
+  const isUnknown = () => main.states.slice(before).some(({ state }) => state.covariance[0] > 0.5);
+  // Where the second press comes too late, it is a first one.
+  for (let press = 1; press <= ATTEMPTS && !isUnknown(); press++) {
+    await page.locator("#map-load").click();
+    await until("an unknown pose", isUnknown, PATIENCE_S / ATTEMPTS).catch((error) => assert(press < ATTEMPTS, error.message));
+  }
   await picture("map-loaded");
   const robot = await page.evaluate(([x, y]) => (window.trundle.map.fit(), window.trundle.map.toWindow([x, y])), [x, y]);
   await page.keyboard.press("p");
@@ -372,7 +439,7 @@ async function stopOnce() {
   await page.locator("#goal-x").fill(String(far));
   await page.locator("#goal-y").fill("0");
   await page.locator("#goal-form button").click();
-  await until("motion", () => main.state.command[0] > 0.15);
+  await until("motion", () => main.state.command[0] > 0.15, DRIVE_S);
   const before = main.states.length;
   const pressed = performance.now();
   await page.keyboard.press(" ");
@@ -397,10 +464,10 @@ await check("the space bar stops the robot within 0.2 s", async () => {
  */
 async function silentOnce(other) {
   await page.keyboard.down("w");
-  await until("motion", () => other.state.command[0] > 0.1);
+  await until("motion", () => other.state.command[0] > 0.1, DRIVE_S);
   await picture("drive");
   // A picture takes the page so long that the robot may stop: it drives again.
-  await until("motion", () => other.state.command[0] > 0.1);
+  await until("motion", () => other.state.command[0] > 0.1, DRIVE_S);
   const from = other.states.length - 1;
   const silent = page.evaluate(() => {
     const start = performance.now();
@@ -477,6 +544,25 @@ await check("a page of another origin can neither look nor drive", async () => {
   server.close();
 });
 
+/** A page whose scripts rest, as those of a computer that sleeps. Other checks go on while the server waits for it. */
+let sleeper = null;
+await check("a page falls asleep", async () => {
+  const viewer = await open(program.view);
+  await until("a state", () => viewer.state !== null);
+  const debug = await viewer.context.newCDPSession(viewer.page);
+  await debug.send("Debugger.enable");
+  await debug.send("Debugger.pause");
+  await page.bringToFront();
+  viewer.since = performance.now();
+  viewer.wake = async () => {
+    viewer.woken = performance.now();
+    await debug.send("Debugger.resume");
+    await debug.send("Debugger.disable");
+  };
+  kept.add(viewer.context);
+  sleeper = viewer;
+});
+
 await check("exploring: the map grows", async () => {
   await page.locator("#explore").click();
   await until("exploring", () => main.state.left.some((task) => task.text === "explore"));
@@ -512,7 +598,7 @@ await check("features over the camera's image, and the time of the stages", asyn
   await picture("features");
   await page.locator("#features-toggle").click();
   const stages = await page.locator("#stages").innerText();
-  assert.match(stages, /slam\s+[\d.]+ %/);
+  await until("the stages", async () => /slam\s+[\d.]+ %/.test(await page.locator("#stages").innerText()));
   return stages.split("\n").slice(0, 2).join(" ");
 });
 
@@ -595,8 +681,8 @@ await check("the camera's image as depth, sent only while it is chosen", async (
 await check("a recording is switched on and off", async () => {
   const card = page.locator("#recording-card");
   await card.scrollIntoViewIfNeeded();
-  assert.match(await text(page, "recording"), /Off/);
-  assert.match(await text(page, "recording-free"), /^\d+ (MB|GB) free$/);
+  await until("no recording", async () => /Off/.test(await text(page, "recording")));
+  await until("the free space", async () => /^\d+ (MB|GB) free$/.test(await text(page, "recording-free")));
   await page.locator("#recording-switch").click();
   await until("a recording", async () => /Recording into recording-2\.mcap/.test(await text(page, "recording")));
   await page.waitForTimeout(3000);
@@ -608,7 +694,7 @@ await check("a recording is switched on and off", async () => {
 await check("landmarks and keyframes", async () => {
   await page.evaluate(() => document.querySelector("[data-layer=visual]").click());
   const count = () => page.evaluate(() => window.trundle.map.landmarks.length / 3);
-  await until("landmarks", async () => (await count()) > 100);
+  await until("landmarks", async () => (await count()) > 100, DRIVE_S);
   await page.waitForTimeout(300);
   await picture("landmarks");
   const landmarks = await count();
@@ -621,23 +707,59 @@ await check("landmarks and keyframes", async () => {
   return `${landmarks} landmarks, ${drawn ? "in space too" : "no WebGL here"}`;
 });
 
+/** Rate of the states of a viewer [1/s], and how old they are beside those of this page [s]: the median and the most. */
+async function lateness(viewer) {
+  const [before, start, lags] = [viewer.states.length, performance.now(), []];
+  for (let i = 0; i < 20; i++) {
+    await page.waitForTimeout(200);
+    lags.push(main.state.time - viewer.state.time);
+  }
+  lags.sort((a, b) => a - b);
+  return { rate: (1000 * (viewer.states.length - before)) / (performance.now() - start), median: lags[10], most: lags.at(-1) };
+}
+
 await check("a network of 40 kB/s gets fewer views, none of them old", async () => {
   const slow = await throttle(new URL(program.view), 40_000);
   const viewer = await open(slow.link);
   await until("a state", () => viewer.state !== null);
   await page.waitForTimeout(6000);
-  const before = viewer.states.length;
-  const lags = [];
-  for (let i = 0; i < 20; i++) {
-    await page.waitForTimeout(200);
-    lags.push(main.state.time - viewer.state.time);
-  }
-  const rate = (viewer.states.length - before) / 4;
+  const tries = [];
+  const isGood = ({ rate, most }) => most < 4 && rate > 0.3;
+  do tries.push(await lateness(viewer));
+  while (!isGood(tries.at(-1)) && tries.length < ATTEMPTS);
   await viewer.context.close();
   slow.close();
-  lags.sort((a, b) => a - b);
-  assert(lags.at(-1) < 4 && rate > 0.3, `${lags.at(-1)} s late, ${rate} views/s`);
-  return `with the camera's image ${rate.toFixed(1)} views/s, late by ${lags[10].toFixed(1)} s, at most ${lags.at(-1).toFixed(1)} s`;
+  const shown = tries.map(({ rate, median, most }) => `${rate.toFixed(1)} views/s, late by ${median.toFixed(1)} s, at most ${most.toFixed(1)} s`);
+  assert(isGood(tries.at(-1)), shown.join("; "));
+  return `with the camera's image ${shown.join("; ")}`;
+});
+
+await check("a network that goes without a word: the page says so and comes back by itself", async () => {
+  const way = await throttle(new URL(program.view), 1_000_000);
+  const viewer = await open(way.link);
+  const link = () => viewer.page.locator("body").getAttribute("data-link");
+  await until("a state", () => viewer.state !== null);
+  way.mute();
+  const noticed = await until("a lost link", async () => (await link()) !== "open");
+  const before = viewer.states.length;
+  const seconds = await until("states again", () => viewer.states.length > before + 3);
+  await until("an open link", async () => (await link()) === "open");
+  await viewer.context.close();
+  way.close();
+  return `noticed after ${noticed.toFixed(1)} s, back after ${seconds.toFixed(1)} s more`;
+});
+
+await check("a page that sleeps longer than the server waits comes back by itself", async () => {
+  assert(sleeper, "no page sleeps");
+  const rest = SILENCE_S - (performance.now() - sleeper.since) / 1000;
+  await until("its leave", () => main.state.viewers === 1, Math.max(0, rest) + PATIENCE_S);
+  const before = sleeper.states.length;
+  await sleeper.wake();
+  const seconds = await until("states again", () => sleeper.states.length > before + 3 && sleeper.states.at(-1).at > sleeper.woken);
+  await until("both viewers", () => main.state.viewers === 2);
+  assert.equal(await sleeper.page.locator("body").getAttribute("data-link"), "open");
+  await sleeper.context.close();
+  return `after ${seconds.toFixed(1)} s`;
 });
 
 /** A map of 100 x 100 m with a path of 6000 points, at so many pixels per metre; null shows it as a whole. */
@@ -741,7 +863,7 @@ const isShown = (page, selector) => page.locator(selector).first().isVisible();
 const tracked = join(place, "tracked");
 
 await check("sim: the page drives by keys, shows camera and depth, and offers no missions", () =>
-  withCommand(["sim", "office", "--laser", "rplidar-a1", "--record", tracked, "--rate", "10", "--duration", "180"], async (viewer) => {
+  withCommand(["sim", "office", "--laser", "rplidar-a1", "--record", tracked, "--rate", "10", "--duration", "900"], async (viewer) => {
     const { page } = viewer;
     for (const absent of ["#explore", "[data-tool=goal]", "#mission-card", "#settings-card"])
       assert(!(await isShown(page, absent)), `${absent} is offered`);
@@ -751,12 +873,14 @@ await check("sim: the page drives by keys, shows camera and depth, and offers no
     await until("depth", async () => (await depths(page)) > 5000);
     await page.keyboard.down("w");
     await until("motion", () => speed(viewer) > 0.1);
-    assert.equal(viewer.state.state, "driven by hand");
-    await page.waitForTimeout(3000);
+    await until("driving by hand", () => viewer.state.state === "driven by hand");
+    const driven = () => Math.hypot(viewer.state.pose[0] - x, viewer.state.pose[1] - y);
+    await until("a way of 0.3 m", () => driven() > 0.3, DRIVE_S);
     await picture("sim", page);
-    await page.waitForTimeout(1000);
+    await until("a way of 0.6 m", () => driven() > 0.6, DRIVE_S);
+    const heading = viewer.state.pose[2];
     await page.keyboard.down("a");
-    await page.waitForTimeout(1500);
+    await until("a turn", () => Math.abs(Math.sin(viewer.state.pose[2] - heading)) > 0.3, DRIVE_S);
     await page.keyboard.up("a");
     await page.keyboard.up("w");
     const seconds = await until("rest", () => speed(viewer) === 0);
@@ -765,9 +889,7 @@ await check("sim: the page drives by keys, shows camera and depth, and offers no
     await page.keyboard.press("Space");
     const stopped = await until("stop", () => speed(viewer) === 0);
     await page.keyboard.up("w");
-    const driven = Math.hypot(viewer.state.pose[0] - x, viewer.state.pose[1] - y);
-    assert(driven > 0.5, `${driven} m`);
-    return `${driven.toFixed(1)} m, at rest ${seconds.toFixed(2)} s after the keys, ${stopped.toFixed(2)} s after STOP`;
+    return `${driven().toFixed(1)} m, at rest ${seconds.toFixed(2)} s after the keys, ${stopped.toFixed(2)} s after STOP`;
   }),
 );
 
@@ -777,8 +899,8 @@ await check("slam: features, landmarks, map and progress, and nothing that drive
     for (const absent of ["#stop", "#explore", "[data-tool=drive]", "#mission-card", "#notes-card"])
       assert(!(await isShown(page, absent)), `${absent} is offered`);
     const landmarks = () => page.evaluate(() => window.trundle.map.landmarks.length / 3);
-    await until("landmarks", async () => (await landmarks()) > 100);
-    await until("half of the images", async () => parseInt(await text(page, "series-count")) > 30);
+    await until("landmarks", async () => (await landmarks()) > 100, DRIVE_S);
+    await until("thirty images", async () => parseInt(await text(page, "series-count")) > 30, DRIVE_S);
     await picture("slam", page);
     return `${await text(page, "series-count")}, ${await landmarks()} landmarks`;
   }),
@@ -790,11 +912,10 @@ await check("experiment: the run that goes on, and the results of those that hav
     assert(!(await isShown(page, "#stop")) && (await isShown(page, "#mission-card")));
     const first = await text(page, "series-shown");
     assert.match(first, /Shown: \d, seed 1/);
-    await until("a result", async () => (await page.locator("#series-ended li").count()) > 0, 120);
-    await until("another run", async () => (await text(page, "series-shown")) !== first, 120);
-    await until("a drive", () => speed(viewer) > 0.3);
-    await page.waitForTimeout(500);
+    await until("a drive", () => speed(viewer) > 0.3, DRIVE_S);
     await picture("experiment", page);
+    await until("a result", async () => (await page.locator("#series-ended li").count()) > 0, DRIVE_S);
+    await until("another run", async () => (await text(page, "series-shown")) !== first, DRIVE_S);
     return `${await text(page, "series-count")}; ${await page.locator("#series-ended li").first().innerText()}`;
   }),
 );
@@ -816,6 +937,16 @@ await check("an encrypted page: the certificate's origin, a link, and nothing in
     await other.end();
   }
 });
+
+for (const state of STATES)
+  await check(`the picture of ${state} looks like its reference`, async () => {
+    assert(taken.has(state), "it was not taken");
+    const measured = await measure(gauge, taken.get(state));
+    const reference = referenceOf(state, measured);
+    assert(reference, `no reference: run with UPDATE_PICTURES=1, and look at ${state}.png`);
+    const found = differences(measured, reference);
+    assert.deepEqual(found, [], `${found.join("; ")} (${join(pictures, `${state}.png`)})`);
+  });
 
 await check("no error in the console", async () => assert.deepEqual(problems, []));
 
