@@ -188,6 +188,31 @@ await check("the map appears", async () => {
   return `${await known()} pixels`;
 });
 
+/** Sends a goal by its numbers. */
+async function sendGoal([x, y, theta = 0]) {
+  await page.locator("#goal-x").fill(String(x));
+  await page.locator("#goal-y").fill(String(y));
+  await page.locator("#goal-heading").fill(String((180 * theta) / Math.PI));
+  await page.locator("#goal-form button").click();
+}
+
+/** Waits for what a mission brings about. A robot that gets no images in time gives its mission up: it gets the mission `again`. */
+async function untilDriven(what, is, again) {
+  let asked = performance.now();
+  return until(
+    what,
+    async () => {
+      if (await is()) return true;
+      const isDue = performance.now() - asked > 5000;
+      if (!isDue || main.state.left.length > 0) return false;
+      asked = performance.now();
+      await again();
+      return false;
+    },
+    DRIVE_S,
+  );
+}
+
 await check("a click sends a goal and the robot arrives", async () => {
   await until("rest", () => main.state.over || main.state.state === "arrived", DRIVE_S);
   await page.keyboard.press("g");
@@ -209,9 +234,10 @@ await check("a click sends a goal and the robot arrives", async () => {
   await until("the goal", () => main.state.left.length > 0);
   const goal = main.state.left[0].goal;
   assert(Math.abs(goal[2] - Math.PI / 2) < 0.1, `heading ${goal[2]} rad`);
-  const seconds = await until("arrival", () => main.state.over, DRIVE_S);
-  const away = Math.hypot(main.state.pose[0] - goal[0], main.state.pose[1] - goal[1]);
-  assert(away < 0.05, `${away} m from the goal`);
+  const distance = () => Math.hypot(main.state.pose[0] - goal[0], main.state.pose[1] - goal[1]);
+  const again = () => sendGoal(goal);
+  const seconds = await untilDriven("arrival", () => main.state.over && distance() < 0.05, again);
+  const away = distance();
   return `${(1000 * away).toFixed(0)} mm from the goal after ${seconds.toFixed(1)} s`;
 });
 
@@ -436,10 +462,8 @@ await check("a map of the folder is loaded by two presses, and the robot gets it
 /** From the space bar to the page that shows the command 0 [s], while the robot drives to a goal. */
 async function stopOnce() {
   const far = main.state.pose[0] < 1.5 ? 2.5 : 0.2;
-  await page.locator("#goal-x").fill(String(far));
-  await page.locator("#goal-y").fill("0");
-  await page.locator("#goal-form button").click();
-  await until("motion", () => main.state.command[0] > 0.15, DRIVE_S);
+  await sendGoal([far, 0]);
+  await untilDriven("motion", () => main.state.command[0] > 0.15, () => sendGoal([far, 0]));
   const before = main.states.length;
   const pressed = performance.now();
   await page.keyboard.press(" ");
@@ -573,7 +597,7 @@ await check("exploring: the map grows", async () => {
       return (max[0] - min[0]) * (max[1] - min[1]);
     });
   const before = await area();
-  await until("a larger map", async () => (await area()) > 1.2 * before, DRIVE_S);
+  await untilDriven("a larger map", async () => (await area()) > 1.2 * before, () => page.locator("#explore").click());
   await page.locator("#fit").click();
   await settled();
   await picture("explore-dark");
