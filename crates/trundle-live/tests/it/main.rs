@@ -3,6 +3,7 @@
 
 mod browser;
 mod guard;
+mod half_open;
 mod live_run;
 mod steering;
 #[cfg(feature = "tls")]
