@@ -208,7 +208,7 @@ function clock(seconds: number): string {
 }
 
 /** A number with digits behind the point; none is -0. */
-function fixed(value: number, digits: number): string {
+export function fixed(value: number, digits: number): string {
   const text = value.toFixed(digits);
   return Number(text) === 0 ? (0).toFixed(digits) : text;
 }

@@ -188,12 +188,15 @@ function stroke(context: CanvasRenderingContext2D, points: [number, number][], d
   context.setLineDash([]);
 }
 
+/** Fills the area below a line, between two points that are both known. */
 function fill(context: CanvasRenderingContext2D, points: [number, number][], base: number): void {
-  if (points.length < 2) return;
   context.beginPath();
-  context.moveTo(points[0]![0], base);
-  points.forEach(([x, y]) => context.lineTo(x, y));
-  context.lineTo(points.at(-1)![0], base);
+  for (let i = 1; i < points.length; i++) {
+    const [[x0, y0], [x1, y1]] = [points[i - 1]!, points[i]!];
+    if (!Number.isFinite(y0 + y1)) continue;
+    context.moveTo(x0, base);
+    for (const [x, y] of [[x0, y0], [x1, y1], [x1, base]] as const) context.lineTo(x, y);
+  }
   context.globalAlpha = 0.2;
   context.fill();
   context.globalAlpha = 1;

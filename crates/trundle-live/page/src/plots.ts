@@ -1,7 +1,7 @@
 // The plots of the panel: speed, bounds of the pose, and load of the stages. A press on a plot looks at its time.
 
 import type { Moments } from "./moments";
-import { element } from "./panel";
+import { element, fixed } from "./panel";
 import { Plot, type PlotFacts, type PlotWindow } from "./plot";
 
 /** Time that the plots show [s]. */
@@ -12,6 +12,10 @@ const STEP_S = 1;
 const SOLID: number[] = [];
 const DASHED = [6, 3];
 const DOTTED = [1.6, 2.4];
+/** Bounds from which on the pose counts as unknown: a gap in the plot [m], [rad]. */
+const UNKNOWN_M = 5;
+const UNKNOWN_RAD = Math.PI;
+const known = (value: number, limit: number) => (value < limit ? value : NaN);
 const degrees = (angle: number) => `${((angle * 180) / Math.PI).toFixed(1)}°`;
 const length = (metres: number) => (Math.abs(metres) < 1 ? `${(100 * metres).toFixed(Math.abs(metres) < 0.1 ? 1 : 0)} cm` : `${metres.toFixed(1)} m`);
 const percent = (part: number) => `${(100 * part).toFixed(part < 0.1 ? 1 : 0)} %`;
@@ -27,12 +31,12 @@ const PLOTS: PlotFacts[] = [
     isFilled: false,
     unit: 1,
     least: 0.2,
-    text: (speed) => `${speed.toFixed(2)} m/s`,
+    text: (speed) => `${fixed(speed, 2)} m/s`,
   },
   {
     title: "Position",
     audience: "for-robot",
-    lines: [{ name: "95 % radius", color: "--accent", dash: SOLID, of: (numbers) => numbers.position }],
+    lines: [{ name: "95 % radius", color: "--accent", dash: SOLID, of: (numbers) => known(numbers.position, UNKNOWN_M) }],
     isFilled: true,
     unit: 1,
     least: 0.05,
@@ -41,7 +45,7 @@ const PLOTS: PlotFacts[] = [
   {
     title: "Heading",
     audience: "for-robot",
-    lines: [{ name: "95 % bound", color: "--map-area", dash: SOLID, of: (numbers) => numbers.heading }],
+    lines: [{ name: "95 % bound", color: "--map-area", dash: SOLID, of: (numbers) => known(numbers.heading, UNKNOWN_RAD) }],
     isFilled: true,
     unit: Math.PI / 180,
     least: 1,
