@@ -5,8 +5,9 @@ use super::tree::Tree;
 
 /// Packages that compile or search for foreign code.
 const FOREIGN: [&str; 7] = ["cc", "cmake", "bindgen", "pkg-config", "vcpkg", "nasm-rs", "cxx"];
-/// Packages of unsupported systems: their exclusive dependencies are never built.
-const OTHER_SYSTEMS: [&str; 1] = ["iana-time-zone-haiku"];
+/// Packages that are named in the lock file and never built: one of an unsupported system, and one of an inactive feature of rustls-webpki,
+/// which deny.toml forbids in the graph.
+const NEVER_BUILT: [&str; 2] = ["iana-time-zone-haiku", "ring"];
 /// Packages that must have one version: their types cross crates.
 const SINGLE: [&str; 1] = ["nalgebra"];
 
@@ -41,7 +42,7 @@ fn is_built(lock: &str, name: &str) -> bool {
         package.lines().find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"')).map(str::to_owned)
     };
     let mut dependents = lock.split("[[package]]").filter(needs).filter_map(own).peekable();
-    dependents.peek().is_none() || dependents.any(|package| !OTHER_SYSTEMS.contains(&package.as_str()))
+    dependents.peek().is_none() || dependents.any(|package| !NEVER_BUILT.contains(&package.as_str()))
 }
 
 #[cfg(test)]
