@@ -9,8 +9,7 @@ use clap::Args;
 use std::path::PathBuf;
 use trundle::app::AppError;
 use trundle::app::convert::{SequenceForm, convert_sequence, open_for};
-use trundle::app::sequence_input::SequenceOptions;
-use trundle::io::RosTopics;
+use trundle::app::sequence_input::{SequenceOptions, topic_rows};
 
 /// `trundle convert`
 #[derive(Debug, Args)]
@@ -21,10 +20,10 @@ pub struct ConvertArgs {
     /// Folder for the result.
     #[arg(required_unless_present = "list")]
     pub out: Option<OutputDirArg>,
-    /// tum: a TUM RGB-D folder. bag: bag.mcap, a ROS 2 bag. recording: recording.mcap, which `trundle replay` runs; it needs odometry.
+    /// tum: a TUM RGB-D folder. bag: bag.mcap, a ROS 2 bag. recording: recording.mcap with all sensors, which `trundle replay` runs; it needs odometry.
     #[arg(long, value_name = "FORM", default_value = "tum")]
     pub to: SequenceForm,
-    /// Only list the topics of a bag or a recording: name, type, messages, encoding of images.
+    /// Only list the topics of a bag or a recording: name, type, messages, encoding of images, use in `trundle replay`.
     #[arg(long)]
     pub list: bool,
     /// The camera.
@@ -40,12 +39,11 @@ pub struct ConvertArgs {
 
 /// `trundle convert IN OUT`.
 pub fn run(args: &ConvertArgs) -> Result<Outcome, AppError> {
+    let options = SequenceOptions::of_camera(&args.input, args.camera.chosen(), args.topics.options());
     let Some(out) = args.out.as_ref().filter(|_| !args.list) else {
-        let topics = RosTopics::read(&args.input)?;
-        console::print_table(&topics.rows().map(Vec::from).collect::<Vec<_>>());
+        console::print_table(&topic_rows(&options)?);
         return Ok(Outcome::Reached);
     };
-    let options = SequenceOptions::of_camera(&args.input, args.camera.chosen(), args.topics.options());
     let input = open_for(&options, args.to)?;
     let folder = logging::output_folder(out)?;
     let display = console::StepDisplay::new(args.common.quiet);

@@ -64,7 +64,7 @@ pub struct MapLogArgs {
     /// Side of a cell, m.
     #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub resolution: f64,
-    /// The laser of a log, and the topics of a bag.
+    /// The laser of a log.
     #[command(flatten)]
     pub laser: LaserArgs,
     /// The topics of a bag.
@@ -120,7 +120,7 @@ impl MapLogArgs {
             particles: usize::from(self.particles),
             seed: self.seed,
             resolution: self.resolution,
-            laser: self.laser.options(self.topics.odom_topic.clone()),
+            laser: self.laser.options(&self.topics),
             map: self.map.clone(),
             deskew: !self.no_deskew,
             map_image: self.map_image,

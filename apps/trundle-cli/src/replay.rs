@@ -17,7 +17,7 @@ use trundle::app::{AppError, ReplaySource, RunLog, RunRecorder, run_on_body};
           trundle replay bag --out out/replay")]
 pub struct ReplayArgs {
     /// A recording made by trundle, with images (`trundle demo --record all`): the run is repeated. Or a ROS 2 bag or a TUM RGB-D folder
-    /// with odometry: the robot locates itself and maps by these sensors; it has no mission.
+    /// with odometry and images or, in a bag, a laser: the robot locates itself and maps by these sensors; it has no mission.
     pub recording: PathBuf,
     /// Replay a recording that is cut, as by a power failure, up to the cut.
     #[arg(long)]

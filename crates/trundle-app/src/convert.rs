@@ -1,4 +1,4 @@
-//! Conversion of RGB-D images with their poses: ROS bag, TUM folder or recording into another of these forms.
+//! Conversion of RGB-D images with their poses, and of a robot's other sensors: ROS bag, TUM folder or recording into another of these forms.
 
 use crate::sequence::SequenceRequest;
 use crate::sequence_input::{PendingFrame, SequenceInput, SequenceOptions};
@@ -15,7 +15,7 @@ pub enum SequenceForm {
     TumFolder,
     /// `bag.mcap`: a ROS 2 bag with colour as JPEG, depth in whole millimetres, camera_info, transforms, odometry and ground truth.
     RosBag,
-    /// `recording.mcap`: a recording of trundle with images, odometry and ground truth, which `trundle replay` runs.
+    /// `recording.mcap`: a recording of trundle with all sensors and ground truth, which `trundle replay` runs.
     Recording,
 }
 
@@ -39,11 +39,17 @@ pub struct Converted {
     pub images: usize,
     /// Number of images that are damaged and left out.
     pub skipped: usize,
+    /// Number of scans of a laser.
+    pub scans: usize,
 }
 
 impl std::fmt::Display for Converted {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} images, {} damaged and left out", self.images, self.skipped)
+        write!(f, "{} images, {} damaged and left out", self.images, self.skipped)?;
+        if self.scans > 0 {
+            write!(f, ", {} scans", self.scans)?;
+        }
+        Ok(())
     }
 }
 
@@ -61,7 +67,7 @@ const DEFAULT_RATE_HZ: f64 = 15.0;
 /// As [`SequenceInput::open`].
 pub fn open_for(options: &SequenceOptions<'_>, form: SequenceForm) -> Result<SequenceInput, AppError> {
     match form {
-        SequenceForm::Recording => SequenceRequest::of_options(options, None).open(),
+        SequenceForm::Recording => SequenceRequest::of_options(&options.clone().for_robot(), None).open(),
         SequenceForm::TumFolder | SequenceForm::RosBag => SequenceInput::open(options),
     }
 }
@@ -93,7 +99,7 @@ fn to_tum(
         let frame = TumFrame::encode(&image).map_err(AppError::input)?;
         Ok(writer.frame(&frame)?)
     })?;
-    input.odometry().into_iter().flatten().for_each(|(stamp, pose)| writer.odometry(*stamp, *pose));
+    input.odometry_of_base().into_iter().flatten().for_each(|(stamp, pose)| writer.odometry(*stamp, *pose));
     input.ground_truth().into_iter().flatten().for_each(|(stamp, pose)| writer.ground_truth(*stamp, *pose));
     writer.finish()?;
     Ok(converted)
@@ -150,14 +156,17 @@ fn to_recording(
     }
     let mut events = SequenceEvents::of(input)?.peekable();
     let mut recording = folder.recorder(RECORDING_FILE)?;
-    recording.set_camera(input.camera.model.camera);
+    if !input.is_empty() {
+        recording.set_camera(input.camera.model.camera);
+    }
     let begin = events.peek().and_then(|event| event.as_ref().ok()).map(EncodedEvent::stamp);
     recording.record_json("/config", "trundle.Config", begin.unwrap_or_default(), &sequence_setup(input))?;
-    progress.begin(Some(input.len()));
-    let mut images = 0;
+    progress.begin((!input.is_empty()).then_some(input.len()));
+    let (mut images, mut scans) = (0, 0);
     for event in events.by_ref() {
         let event = event?;
         recording.record_event(&event)?;
+        scans += usize::from(matches!(event, EncodedEvent::Scan(_)));
         if matches!(event, EncodedEvent::Rgbd(_)) {
             images += 1;
             progress.advance();
@@ -168,13 +177,13 @@ fn to_recording(
     }
     progress.end();
     recording.finish()?;
-    finished(input, Converted { images, skipped: input.len() - images })
+    finished(input, Converted { images, skipped: input.len() - images, scans })
 }
 
 /// Odometry and ground truth as messages with their topics, in the order of their stamps.
 fn poses(input: &SequenceInput, base: &str, camera: &str) -> Vec<(Stamp, &'static str, RosMessage)> {
     let (odom, world) = (FrameId::Odom.to_string(), FrameId::World.to_string());
-    let odometry = input.odometry().into_iter().flatten().map(|(stamp, pose)| {
+    let odometry = input.odometry_of_base().into_iter().flatten().map(|(stamp, pose)| {
         let pose = Pose3::from_pose2(*pose);
         (*stamp, "/odom", ros_message::odometry_pose(*stamp, &odom, base, pose))
     });
@@ -192,7 +201,7 @@ fn each_image(
     progress: &dyn StepProgress,
     mut write: impl FnMut(PendingFrame<'_>, RgbdImage) -> Result<(), AppError>,
 ) -> Result<Converted, AppError> {
-    let mut converted = Converted { images: 0, skipped: 0 };
+    let mut converted = Converted { images: 0, skipped: 0, scans: 0 };
     progress.begin(Some(input.len()));
     for frame in input.frames()? {
         if stop::is_requested(|| format!("{} of {} images", converted.images, input.len())) {
@@ -216,7 +225,7 @@ fn each_image(
 }
 
 fn finished(input: &SequenceInput, converted: Converted) -> Result<Converted, AppError> {
-    if converted.images == 0 {
+    if converted.images == 0 && converted.scans == 0 {
         return Err(AppError::Input(format!("{}: no image can be used", input.path.display())));
     }
     Ok(converted)

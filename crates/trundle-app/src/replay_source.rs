@@ -20,7 +20,7 @@ pub struct ReplaySource {
 enum Content {
     /// A recording: the same run again.
     Recording(Box<RunReplayer>),
-    /// Images and odometry of another program: the run of a robot without a mission.
+    /// Sensors with odometry of another program: the run of a robot without a mission.
     Sensors(Box<SequenceInput>),
 }
 
@@ -36,7 +36,7 @@ impl ReplaySource {
         // Another program may have written a recording anew: its content tells, not the name of the program in its header.
         let is_foreign_bag = kind.is_bag() && !RunReplayer::is_run(&path);
         if is_foreign_bag || kind == FileKind::SequenceFolder {
-            let input = SequenceRequest::of_options(options, robot).open()?;
+            let input = SequenceRequest::of_options(&options.clone().for_robot(), robot).open()?;
             let setup = sequence_setup(&input);
             return Ok(Self { path, setup, content: Content::Sensors(Box::new(input)) });
         }

@@ -1,16 +1,22 @@
-//! RGB-D images with odometry and truth for `slam` and `map`: a TUM RGB-D folder, a ROS bag, or the recording of a run.
+//! RGB-D images with odometry and truth for `slam` and `map`: a TUM RGB-D folder, a ROS bag, or the recording of a run. For the run of a
+//! robot also the gyro and the laser of a bag.
 
 mod frames;
 mod idle_options;
+mod motion_events;
 mod recorded_run;
+mod topic_rows;
 
 pub use frames::PendingFrame;
+pub use motion_events::motion_events;
 pub use recorded_run::RecordedRun;
+pub use topic_rows::topic_rows;
 
 use crate::{AppError, log_warnings};
 use frames::SequenceFrames;
+use motion_events::fused_odometry;
 use std::path::{Path, PathBuf};
-use trundle_core::{Pose2, Pose3, Stamp};
+use trundle_core::{GyroRate, Pose2, Pose3, Scan, Stamp};
 use trundle_io::{
     CameraModel, DepthStatistics, FileKind, KINECT_V2_DEPTH_SCALE, LaserLogSources, RosImageTopics,
     RosSequence, RosSequenceOptions, RosTopics, SequenceCamera, TumSequence, Warnings,
@@ -50,6 +56,13 @@ impl<'a> SequenceOptions<'a> {
     ) -> Self {
         Self { camera, depth_scale, topics, ..Self::new(path) }
     }
+
+    /// The same input for the run of a robot: with the scans of a bag's laser, which then needs no images.
+    #[must_use]
+    pub fn for_robot(mut self) -> Self {
+        self.topics.is_for_robot = true;
+        self
+    }
 }
 
 /// RGB-D images in the order of their stamps, with the input's other data.
@@ -70,7 +83,13 @@ pub struct SequenceInput {
 enum Source {
     Folder(Box<TumSequence>),
     Recording(Box<RecordedRun>),
-    Bag(Box<RosSequence>),
+    Bag(Box<BagSource>),
+}
+
+/// A bag, with its odometry by wheels and gyro; empty without a gyro.
+struct BagSource {
+    sequence: RosSequence,
+    fused: Vec<(Stamp, Pose2)>,
 }
 
 impl SequenceInput {
@@ -111,8 +130,10 @@ impl SequenceInput {
 
     fn of_bag(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
         let path = options.path;
+        options.refuse_unused_scans()?;
         let sequence = RosSequence::open(path, &options.topics, options.camera.is_none())?;
         let mut camera = match sequence.camera() {
+            None if sequence.is_empty() => camera_of(&RobotConfig::default(), path),
             Some(camera) => SequenceCamera {
                 model: CameraModel { camera, depth_scale: KINECT_V2_DEPTH_SCALE },
                 name: sequence.topics().info.clone(),
@@ -127,8 +148,7 @@ impl SequenceInput {
         log_warnings(sequence.warnings());
         // Depth of ROS is in millimetres (REP 118), independent of the unit in folders of the same camera.
         camera.model.depth_scale = options.depth_scale.unwrap_or(KINECT_V2_DEPTH_SCALE);
-        let topics = sequence.topics();
-        tracing::info!("colour on {}, depth on {}", topics.color, topics.depth);
+        tracing::info!("{}", sequence.topics());
         let mut robot = RobotConfig::default();
         robot.camera = camera.model.camera;
         match sequence.base_from_camera().map(|pose| CameraMount::of_pose(&pose)) {
@@ -138,7 +158,24 @@ impl SequenceInput {
             }
             None => {}
         }
-        Ok(Self::new(path, camera, robot, Source::Bag(Box::new(sequence))))
+        let source = BagSource { sequence, fused: Vec::new() };
+        let mut input = Self::new(path, camera, RobotConfig::default(), Source::Bag(Box::new(source)));
+        input.set_robot(robot)?;
+        Ok(input)
+    }
+
+    /// Takes the robot that carries the sensors.
+    ///
+    /// # Errors
+    /// When its settings are invalid.
+    pub fn set_robot(&mut self, robot: RobotConfig) -> Result<(), AppError> {
+        if let Source::Bag(bag) = &mut self.source
+            && let (Some(odometry), false) = (bag.sequence.odometry(), bag.sequence.gyro().is_empty())
+        {
+            bag.fused = fused_odometry(odometry, bag.sequence.gyro(), &robot)?;
+        }
+        self.robot = robot;
+        Ok(())
     }
 
     fn of_folder(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
@@ -197,11 +234,11 @@ impl SequenceInput {
         match &self.source {
             Source::Folder(sequence) => sequence.len(),
             Source::Recording(run) => run.image_count(),
-            Source::Bag(sequence) => sequence.len(),
+            Source::Bag(bag) => bag.sequence.len(),
         }
     }
 
-    /// Whether the sequence is empty; always false.
+    /// Whether the sequence has no image: the bag of a robot with a laser.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -213,7 +250,7 @@ impl SequenceInput {
         match &self.source {
             Source::Folder(sequence) => sequence.unpaired(),
             Source::Recording(_) => 0,
-            Source::Bag(sequence) => sequence.unpaired(),
+            Source::Bag(bag) => bag.sequence.unpaired(),
         }
     }
 
@@ -223,28 +260,62 @@ impl SequenceInput {
         match &self.source {
             Source::Folder(sequence) => sequence.listed(),
             Source::Recording(run) => run.image_count(),
-            Source::Bag(sequence) => sequence.listed(),
+            Source::Bag(bag) => bag.sequence.listed(),
         }
     }
 
-    /// `world_from_camera`, for evaluation, if it is known.
+    /// `world_from_camera`, without images `world_from_base`, for evaluation, if it is known.
     #[must_use]
     pub fn ground_truth(&self) -> Option<&[(Stamp, Pose3)]> {
         match &self.source {
             Source::Folder(sequence) => sequence.ground_truth(),
             Source::Recording(run) => run.ground_truth(),
-            Source::Bag(sequence) => sequence.ground_truth(),
+            Source::Bag(bag) => bag.sequence.ground_truth(),
         }
     }
 
-    /// `odom_from_base`, if it is known.
+    /// `odom_from_base`, if it is known; with a gyro the heading is the gyro's.
     #[must_use]
     pub fn odometry(&self) -> Option<&[(Stamp, Pose2)]> {
         match &self.source {
+            Source::Bag(bag) if !bag.fused.is_empty() => Some(&bag.fused),
+            _ => self.odometry_of_base(),
+        }
+    }
+
+    /// `odom_from_base` as the base of a bag or a folder computed it, if it is known.
+    #[must_use]
+    pub fn odometry_of_base(&self) -> Option<&[(Stamp, Pose2)]> {
+        match &self.source {
             Source::Folder(sequence) => sequence.odometry(),
             Source::Recording(run) => run.odometry(),
-            Source::Bag(sequence) => sequence.odometry(),
+            Source::Bag(bag) => bag.sequence.odometry(),
         }
+    }
+
+    /// The turn rates of a bag's gyro around the base's vertical, by rising stamps; empty for other inputs.
+    #[must_use]
+    pub fn gyro(&self) -> &[GyroRate] {
+        match &self.source {
+            Source::Bag(bag) => bag.sequence.gyro(),
+            _ => &[],
+        }
+    }
+
+    /// Times of the first and of the last beam of each scan of a bag's laser, by rising stamps; empty for other inputs.
+    #[must_use]
+    pub fn scan_times(&self) -> Vec<(Stamp, Stamp)> {
+        match &self.source {
+            Source::Bag(bag) => bag.sequence.scan_times().collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A scan of a bag's laser, base frame.
+    #[must_use]
+    pub fn scan(&self, index: usize) -> Option<Scan> {
+        let Source::Bag(bag) = &self.source else { return None };
+        bag.sequence.scan(index)
     }
 
     /// Whether the input is a recording of trundle.
@@ -275,8 +346,8 @@ impl SequenceInput {
     /// The topics of a bag: of the depth images that become scans, of the odometry, and those unused. Empty for other inputs.
     #[must_use]
     pub fn laser_sources(&self) -> LaserLogSources {
-        let Source::Bag(sequence) = &self.source else { return LaserLogSources::default() };
-        let RosImageTopics { depth, odometry, left, .. } = sequence.topics().clone();
+        let Source::Bag(bag) = &self.source else { return LaserLogSources::default() };
+        let RosImageTopics { depth, odometry, left, .. } = bag.sequence.topics().clone();
         LaserLogSources { scans: depth, odometry, left }
     }
 
@@ -287,7 +358,7 @@ impl SequenceInput {
         let given = match &self.source {
             Source::Folder(_) => None,
             Source::Recording(run) => run.robot().map(|robot| robot.mount.base_from_camera()),
-            Source::Bag(sequence) => sequence.base_from_camera(),
+            Source::Bag(bag) => bag.sequence.base_from_camera(),
         };
         given.or_else(|| self.floor_mount.map(|mount| mount.base_from_camera()))
     }
@@ -303,8 +374,8 @@ impl SequenceInput {
                 let delay = self.robot.image_delay;
                 Ok(SequenceFrames::of_recording(&self.path, run.open()?, self.size(), delay))
             }
-            Source::Bag(sequence) => {
-                let frames = sequence.frames(self.depth_scale())?;
+            Source::Bag(bag) => {
+                let frames = bag.sequence.frames(self.depth_scale())?;
                 Ok(SequenceFrames::of_bag(&self.path, frames, self.size()))
             }
         }

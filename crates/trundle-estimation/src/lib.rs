@@ -1,6 +1,7 @@
 //! Fusion of wheels, gyro, visual poses and scan matches to one pose estimate.
 //!
 //! - [`WheelOdometry`]: continuous pose by encoder ticks and gyro, with drift, and its covariance.
+//! - [`OdometryEvents`]: odometry that a base computed, as events of a robot: wheels if a gyro gives the heading.
 //! - [`Localizer`]: an extended Kalman filter on SE(2). It corrects the odometry by visual poses and scan matches at their stamps, and
 //!   yields the [`trundle_core::PoseEstimate`] of planning and control.
 //! - [`Smoother`]: poses of the last seconds and calibration by one least-squares problem, beside the localizer.
@@ -56,10 +57,13 @@ pub use fusion::localizer::Localizer;
 pub use fusion::map_uncertainty::MapUncertainty;
 pub use fusion::pose_uncertainty::PoseUncertainty;
 pub use fusion::visual_frame::VisualAnchor;
+pub use odometry::continuous_odometry::{ContinuousOdometry, OdometryJump};
 pub use odometry::motion_increment::MotionIncrement;
+pub use odometry::odometry_events::OdometryEvents;
 pub use odometry::report::{WheelCounts, WheelReport};
 pub use odometry::state::OdometryState;
 pub use odometry::wheel_odometry::WheelOdometry;
+pub use odometry::wheels_from_odometry::WheelsFromOdometry;
 pub use odometry_config::OdometryConfig;
 pub use planar::planar_covariance;
 pub use pose_monitor::displacement::ImageEvidence;

@@ -299,6 +299,7 @@ pub(crate) mod fixtures {
                 state: DriveState::Arrived,
                 is_operated: false,
                 is_of_sensors: false,
+                has_laser_map: false,
                 out_of_time: None,
                 tasks: TaskCounts::default(),
             },

@@ -75,8 +75,8 @@ pub use output::{
 pub use recording::{PoseInFrame, PosesInFrame, RecordedMessage, Recorder, RecordingCut, RecordingReader};
 pub use ros::message as ros_message;
 pub use ros::{
-    RosFrame, RosFrames, RosImageTopics, RosSequence, RosSequenceOptions, RosTopics, decode_compressed_depth,
-    read_laser_log, read_ros_bag,
+    ConvertedScan, ImuReading, LaserSweep, NoEcho, RosFrame, RosFrames, RosImageTopics, RosSequence,
+    RosSequenceOptions, RosTopics, decode_compressed_depth, read_laser_log, read_ros_bag,
 };
 pub use sequence_camera::SequenceCamera;
 pub use stamp_text::parse_stamp;

@@ -18,6 +18,12 @@ pub struct BagTopicsArgs {
     /// The topic of a bag's odometry, or of its transforms [default: the one with the largest number of messages]
     #[arg(long, value_name = "TOPIC")]
     pub odom_topic: Option<String>,
+    /// The topic of a bag's IMU, whose gyro gives the heading [default: the one with the largest number of usable readings]
+    #[arg(long, value_name = "TOPIC")]
+    pub imu_topic: Option<String>,
+    /// The topic of a laser's scans; in a CARMEN log the name of the lines, as RAWLASER2 [default: the one with the largest number of scans]
+    #[arg(long, value_name = "TOPIC")]
+    pub scan_topic: Option<String>,
 }
 
 impl BagTopicsArgs {
@@ -28,6 +34,8 @@ impl BagTopicsArgs {
         options.depth_topic.clone_from(&self.depth_topic);
         options.info_topic.clone_from(&self.info_topic);
         options.odometry_topic.clone_from(&self.odom_topic);
+        options.imu_topic.clone_from(&self.imu_topic);
+        options.scan_topic.clone_from(&self.scan_topic);
         options
     }
 }

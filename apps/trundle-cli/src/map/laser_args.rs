@@ -1,10 +1,10 @@
 //! The options of `trundle map` for laser logs.
 
-use crate::common_args::NumberArg;
+use crate::common_args::{BagTopicsArgs, NumberArg};
 use clap::Args;
 use trundle::io::LaserLogOptions;
 
-/// The laser of a log, and the topics of a bag.
+/// The laser of a log.
 #[derive(Debug, Args)]
 pub struct LaserArgs {
     /// Position of the laser ahead of the base's origin, m [default: the log's]
@@ -19,21 +19,18 @@ pub struct LaserArgs {
     /// Smallest range that is no return, m [default: the most frequent largest reading]
     #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub max_range: Option<f64>,
-    /// The topic of the scans; in a CARMEN log the name of the lines, as RAWLASER2 [default: the one with the largest number of scans]
-    #[arg(long, value_name = "TOPIC")]
-    pub scan_topic: Option<String>,
 }
 
 impl LaserArgs {
-    /// The options for reading the log, with the topic of a bag's odometry.
-    pub fn options(&self, odometry_topic: Option<String>) -> LaserLogOptions {
+    /// The options for reading the log, with the topics of a bag.
+    pub fn options(&self, topics: &BagTopicsArgs) -> LaserLogOptions {
         let mut options = LaserLogOptions::default();
         options.laser_x = self.laser_x;
         options.laser_turn = self.laser_turn.map(f64::to_radians);
         options.upside_down = self.upside_down;
         options.max_range = self.max_range;
-        options.scan_topic = self.scan_topic.clone();
-        options.odometry_topic = odometry_topic;
+        options.scan_topic.clone_from(&topics.scan_topic);
+        options.odometry_topic.clone_from(&topics.odom_topic);
         options
     }
 
@@ -44,7 +41,6 @@ impl LaserArgs {
             ("--laser-turn", self.laser_turn.is_some()),
             ("--upside-down", self.upside_down),
             ("--max-range", self.max_range.is_some()),
-            ("--scan-topic", self.scan_topic.is_some()),
         ];
         options.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name)
     }

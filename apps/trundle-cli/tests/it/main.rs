@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "helpers of tests")]
 
 mod bad_input;
+mod bag_replay;
 mod calibrate;
 mod config;
 mod demo;

@@ -16,6 +16,12 @@ impl LaserMapRequest {
         self.refuse_idle_cut()?;
         let log = self.log.display();
         let is_sequence = SequenceInput::is_sequence(&self.log, &self.topics);
+        let laser_option = laser_option.or(self.laser.scan_topic.as_ref().map(|_| "--scan-topic"));
+        if let (false, Some(topic)) = (is_sequence, &self.topics.imu_topic) {
+            return Err(AppError::Input(format!(
+                "--imu-topic {topic} has no effect on the scans of {log}, expected RGB-D images or no --imu-topic"
+            )));
+        }
         match (is_sequence, &self.poses, laser_option) {
             (false, Some(_), _) => Err(AppError::Input(format!(
                 "--poses is about the camera of RGB-D images, and {log} holds none"

@@ -5,9 +5,10 @@ use crate::real_time::RealTimeReport;
 use crate::{FinishedRun, RunSetup, TrackCounts};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
+use trundle_core::Cell;
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::Summary;
-use trundle_runtime::{DriveState, GoalApproachReport, Reason, Stage, StageTimes, TaskEnd};
+use trundle_runtime::{DriveState, GoalApproachReport, RangeSource, Reason, Stage, StageTimes, TaskEnd};
 
 /// The numbers of a run, without the wall clock's.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -56,6 +57,9 @@ pub struct RunEnd {
     /// Whether the run had only the sensors of a robot that something else drove, and no mission.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_of_sensors: bool,
+    /// Whether scans of a laser entered the map.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub has_laser_map: bool,
     /// The time limit that ended the run \[s\], if one did.
     pub out_of_time: Option<f64>,
     /// Numbers of tasks at the end, with and without a goal.
@@ -83,6 +87,8 @@ impl RunEnd {
             state: log.state.clone(),
             is_operated: setup.is_operated,
             is_of_sensors: setup.is_of_sensors(),
+            has_laser_map: setup.robot.sight == RangeSource::Laser
+                && run.robot.grid().cells().contains(&Cell::Free),
             out_of_time: setup.is_out_of_time(log).then_some(setup.time_limit),
         }
     }
@@ -154,7 +160,7 @@ impl RunNumbers {
     /// Whether every goal was reached without a contact, in truth if it is known.
     pub fn is_success(&self) -> bool {
         if self.end.is_of_sensors {
-            return !self.end.is_cut() && self.tracked.ok > 0;
+            return !self.end.is_cut() && (self.tracked.ok > 0 || self.end.has_laser_map);
         }
         if self.end.is_operated {
             let is_done = self.end.tasks.done > 0 && self.end.tasks.left == 0;
@@ -216,7 +222,7 @@ impl RunNumbers {
         match self.is_success() {
             true => "Replayed: the robot had no mission; it located itself and mapped.".to_owned(),
             false if self.end.is_cut() => "Failed: the run was ended early.".to_owned(),
-            false => "Failed: the robot tracked no image.".to_owned(),
+            false => "Failed: the robot tracked no image and drew no scan of a laser.".to_owned(),
         }
     }
 

@@ -85,10 +85,13 @@ impl SequenceRequest {
         })?;
         if let Some(robot) = &self.robot {
             // The input's mount, unless the robot file has one.
-            let mount = self.given_mount().unwrap_or(input.robot.mount);
-            input.robot = RobotConfig::clone(robot);
-            input.robot.mount = mount;
-            input.robot.camera = input.camera.model.camera;
+            let mut own = RobotConfig::clone(robot);
+            own.mount = self.given_mount().unwrap_or(input.robot.mount);
+            own.camera = input.camera.model.camera;
+            input.set_robot(own)?;
+        }
+        if input.is_empty() {
+            return Ok(input);
         }
         find_readout(&mut input, self.frames)?;
         if self.map.is_some() {

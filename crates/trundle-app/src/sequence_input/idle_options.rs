@@ -29,6 +29,20 @@ impl SequenceOptions<'_> {
         }
     }
 
+    /// Refuses a topic of scans for images alone.
+    ///
+    /// # Errors
+    /// Names the topic.
+    pub(super) fn refuse_unused_scans(&self) -> Result<(), AppError> {
+        let Some(topic) = self.topics.scan_topic.as_ref().filter(|_| !self.topics.is_for_robot) else {
+            return Ok(());
+        };
+        Err(AppError::Input(format!(
+            "--scan-topic {topic} has no effect on the images of {}, expected no --scan-topic: `trundle replay` uses images and scans",
+            self.path.display()
+        )))
+    }
+
     /// Name and value of the first topic that is given.
     pub(crate) fn first_topic(&self) -> Option<(&'static str, &str)> {
         let topics = &self.topics;
@@ -37,6 +51,8 @@ impl SequenceOptions<'_> {
             ("--depth-topic", &topics.depth_topic),
             ("--info-topic", &topics.info_topic),
             ("--odom-topic", &topics.odometry_topic),
+            ("--imu-topic", &topics.imu_topic),
+            ("--scan-topic", &topics.scan_topic),
         ];
         given.into_iter().find_map(|(option, topic)| Some((option, topic.as_deref()?)))
     }

@@ -14,5 +14,6 @@ mod other_driver;
 mod recorded_sequence;
 mod recording;
 mod report;
+mod robot_bag;
 mod run_log;
 mod session;

@@ -2,7 +2,7 @@
 
 use super::contents::{BagMotion, Contents};
 use super::frames::NoTransform;
-use super::laser_scan::convert;
+use super::laser_scan::NoEcho;
 use super::messages::LaserScan;
 use crate::carmen::read_carmen;
 use crate::laser_log::{
@@ -115,7 +115,7 @@ fn take(
 ) -> Result<(), String> {
     require_order(log.scans.last().map(|scan| scan.scan.stamp()), message.stamp)?;
     let odom_from_base = motion.at(message.stamp)?;
-    let converted = convert(message, mount, max_range)?;
+    let converted = message.sweep().on_base(mount, max_range, NoEcho::Unseen)?;
     let scan = LaserLogScan { odom_from_base, scan: converted.scan };
     insert_in_order(&mut log.scans, scan, |scan| scan.scan.stamp())?;
     log.bad_ranges += converted.bad_ranges;

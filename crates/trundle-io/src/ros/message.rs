@@ -12,6 +12,8 @@ pub use sensors::{camera_info, color_image, depth_image, gyro, scan};
 pub use status::{diagnostics, text};
 pub use visualization::{PointPair, features, keyframe_graph, points};
 
+pub(in crate::ros) use sensors::NOT_MEASURED;
+
 use crate::ros::cdr_writer::CdrWriter;
 
 /// A message in CDR and its type.

@@ -1,6 +1,7 @@
 //! The ROS message types that are read: laser scan, odometry and transforms.
 
 use super::cdr::{CdrError, CdrReader, Wire};
+use super::laser_scan::LaserSweep;
 use nalgebra::{Quaternion, UnitQuaternion};
 use trundle_core::{Pose3, Stamp, Vector3};
 
@@ -8,6 +9,7 @@ use trundle_core::{Pose3, Stamp, Vector3};
 pub(in crate::ros) mod types {
     pub const LASER_SCAN: &str = "sensor_msgs/msg/LaserScan";
     pub const ODOMETRY: &str = "nav_msgs/msg/Odometry";
+    pub const IMU: &str = "sensor_msgs/msg/Imu";
     pub const TF: &str = "tf2_msgs/msg/TFMessage";
     pub const IMAGE: &str = "sensor_msgs/msg/Image";
     pub const COMPRESSED_IMAGE: &str = "sensor_msgs/msg/CompressedImage";
@@ -19,6 +21,7 @@ pub(in crate::ros) mod types {
         match name {
             "sensor_msgs/LaserScan" => LASER_SCAN,
             "nav_msgs/Odometry" => ODOMETRY,
+            "sensor_msgs/Imu" => IMU,
             "tf2_msgs/TFMessage" | "tf/tfMessage" => TF,
             "sensor_msgs/Image" => IMAGE,
             "sensor_msgs/CompressedImage" => COMPRESSED_IMAGE,
@@ -86,6 +89,19 @@ impl LaserScan {
             range_max: f64::from(r.f32("range_max")?),
             ranges: r.f32_list("ranges")?,
         })
+    }
+
+    /// The sweep in the laser's frame.
+    pub(in crate::ros) fn sweep(&self) -> LaserSweep<'_> {
+        LaserSweep {
+            stamp: self.stamp,
+            angle_min: self.angle_min,
+            angle_increment: self.angle_increment,
+            time_increment: self.time_increment,
+            range_min: self.range_min,
+            range_max: self.range_max,
+            ranges: &self.ranges,
+        }
     }
 }
 

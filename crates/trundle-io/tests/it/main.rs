@@ -4,6 +4,7 @@
 mod recording;
 mod ros;
 mod ros_rgbd;
+mod ros_sensors;
 mod sequence;
 mod tum_writer;
 

@@ -1,6 +1,6 @@
 //! Odometry, gyro, laser and battery of a ROS 2 robot as events.
 
-use super::{BodySettings, ContinuousOdometry, FrameTree, MAX_STEP_M, WheelsFromOdometry};
+use super::{BodySettings, FrameTree};
 use crate::Ros2Error;
 use crate::clock::RosClock;
 use crate::convert::{battery, imu, odometry, scan, stamp};
@@ -10,12 +10,12 @@ use crate::generated::sensor_msgs::{BatteryState, Imu, LaserScan};
 use crate::generated::std_msgs::Header;
 use crate::node::{Diagnostics, RosNode, TopicMonitor, qos};
 use std::collections::VecDeque;
+use std::fmt::Display;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use trundle_core::{
-    BodyEvent, BodyEventKind, DifferentialDrive, Invalid, Odometry, Pose2, Pose3, SensorEvent, Stamp,
-};
+use trundle_core::{BodyEvent, BodyEventKind, DifferentialDrive, Odometry, Pose2, Pose3, SensorEvent, Stamp};
+use trundle_estimation::OdometryEvents;
 
 /// Silence of the odometry after which the base counts as lost \[s\]: ten readings at 20 Hz. Source: ours.
 pub const MAX_ODOM_SILENCE: Duration = Duration::from_millis(500);
@@ -70,7 +70,7 @@ impl Shared {
     }
 
     /// The value, or a report with the topic.
-    pub(super) fn accept<T>(&self, topic: &str, value: Result<T, Invalid>) -> Option<T> {
+    pub(super) fn accept<T>(&self, topic: &str, value: Result<T, impl Display>) -> Option<T> {
         value.map_err(|error| self.diagnostics.warn(topic, error.to_string())).ok()
     }
 
@@ -132,7 +132,7 @@ fn subscribe_odometry(
     shared: &Arc<Shared>,
 ) -> Result<Arc<TopicMonitor>, Ros2Error> {
     let (shared, name) = (Arc::clone(shared), node.names().resolve(&settings.odom));
-    let (mut continuous, mut wheels) = (ContinuousOdometry::default(), WheelsFromOdometry::new(drive));
+    let mut events = OdometryEvents::new(drive);
     let base = settings.base_frame.clone();
     let on_odometry = move |message: OdometryMessage| {
         let Some(at) = shared.stamp(&name, &message.header.stamp) else { return };
@@ -140,24 +140,11 @@ fn subscribe_odometry(
         let Some(own) = on_base(own, &message.child_frame_id, &base, &shared) else { return };
         lock(&shared.odom_frame).get_or_insert(message.header.frame_id);
         note(&mut lock(&shared.odometry), own);
-        let (own, jump) = continuous.add(&own);
-        jump.into_iter().for_each(|length| report_jump(&name, &shared, length));
-        let uses_gyro = shared.uses_gyro.load(Ordering::Relaxed);
-        shared.send(if uses_gyro {
-            SensorEvent::Wheels(wheels.add(&own))
-        } else {
-            SensorEvent::Odometry(own)
-        });
+        let (event, jump) = events.add(&own, shared.uses_gyro.load(Ordering::Relaxed));
+        jump.into_iter().for_each(|jump| shared.diagnostics.warn(&name, jump.to_string()));
+        shared.send(event);
     };
     node.subscribe(&settings.odom, &qos::sensor(5), Some(MAX_ODOM_SILENCE), on_odometry)
-}
-
-/// Reports a jump of the odometry \[m\].
-fn report_jump(topic: &str, shared: &Shared, length: f64) {
-    let message = format!(
-        "a jump of {length:.2} m from one message to the next, expected at most {MAX_STEP_M} m: was the base's driver started anew?"
-    );
-    shared.diagnostics.warn(topic, message);
 }
 
 fn note(history: &mut VecDeque<Odometry>, newest: Odometry) {
@@ -205,7 +192,7 @@ fn subscribe_scan(
     let on_scan = move |message: LaserScan| {
         let Some(at) = shared.stamp(&name, &message.header.stamp) else { return };
         let Some(base_from_laser) = shared.base_from(&name, &base, &message.header) else { return };
-        let sweep = scan::from_ros(&message, at, &base_from_laser.to_pose2());
+        let sweep = scan::from_ros(&message, at, &base_from_laser);
         shared.accept(&name, sweep).into_iter().for_each(|sweep| shared.send(SensorEvent::Scan(sweep)));
     };
     node.subscribe(topic, &qos::sensor(5), Some(MAX_SCAN_SILENCE), on_scan)

@@ -3,7 +3,6 @@
 mod base_sensors;
 mod camera_topics;
 mod commands;
-mod continuous_odometry;
 mod frame_tree;
 mod image_inbox;
 mod image_pairs;
@@ -11,14 +10,11 @@ mod link_watch;
 mod ros2_body;
 mod ros_camera;
 mod settings;
-mod wheels;
 
 pub use base_sensors::{MAX_ODOM_SILENCE, MAX_SCAN_SILENCE};
-pub use continuous_odometry::{ContinuousOdometry, MAX_STEP_M};
 pub use frame_tree::FrameTree;
 pub use image_inbox::{ImageInbox, ImagePair, ReceivedImage};
 pub use image_pairs::{ImagePairs, MAX_PAIR_GAP_S};
 pub use ros_camera::{RosCamera, RosCameraSource};
 pub use ros2_body::{BodyDescription, OdometryReader, Ros2Body};
 pub use settings::BodySettings;
-pub use wheels::WheelsFromOdometry;

@@ -4,7 +4,8 @@ use super::{pose, stamp};
 use crate::generated::geometry_msgs::Vector3Message;
 use crate::generated::sensor_msgs::Imu;
 use nalgebra::UnitQuaternion;
-use trundle_core::{GyroRate, Invalid, Stamp, Vector3, require_finite};
+use trundle_core::{GyroRate, Invalid, Stamp, Vector3};
+use trundle_io::ImuReading;
 
 /// The covariance element for a quantity that is not measured. Source: REP 145, `sensor_msgs/Imu`.
 const NOT_MEASURED: f64 = -1.0;
@@ -12,24 +13,12 @@ const NOT_MEASURED: f64 = -1.0;
 /// The turn rate around the base's vertical axis, at `stamp` of the run. `base_from_imu` is the rotation of the sensor on the base.
 ///
 /// # Errors
-/// When the message declares no turn rate, or a rate is not finite.
+/// As [`ImuReading::gyro_rate`].
 pub fn from_ros(imu: &Imu, stamp: Stamp, base_from_imu: &UnitQuaternion<f64>) -> Result<GyroRate, Invalid> {
     let rate = &imu.angular_velocity;
-    if imu.angular_velocity_covariance[0] == NOT_MEASURED {
-        return Err(Invalid::new(
-            "angular_velocity_covariance[0]",
-            NOT_MEASURED,
-            "",
-            "0 or above: a measured turn rate",
-        ));
-    }
-    for (name, value) in
-        [("angular_velocity.x", rate.x), ("angular_velocity.y", rate.y), ("angular_velocity.z", rate.z)]
-    {
-        require_finite(name, value, "rad/s")?;
-    }
-    let turned = base_from_imu * Vector3::new(rate.x, rate.y, rate.z);
-    Ok(GyroRate { stamp, omega: turned.z })
+    let angular_velocity = Vector3::new(rate.x, rate.y, rate.z);
+    let covariance = imu.angular_velocity_covariance[0];
+    ImuReading { stamp, angular_velocity, covariance }.gyro_rate(base_from_imu)
 }
 
 /// A turn rate as a message: heading by `theta`, no acceleration, stamped `at` on the ROS clock.

@@ -2,42 +2,25 @@
 
 use super::stamp;
 use crate::generated::sensor_msgs::LaserScan;
-use trundle_core::{Beam, BeamTimes, Invalid, Pose2, Scan, Stamp, require_finite, require_in};
-
-/// Largest number of beams of a sweep. Source: ours; a sweep of 0.01 deg has 36,000.
-const MAX_BEAMS: usize = 100_000;
+use trundle_core::{Beam, Pose3, Scan, Stamp};
+use trundle_io::{LaserSweep, NoEcho};
 
 /// The sweep of a laser with pose `base_from_laser` on the base, at `stamp` of the run. Beams without echo are free up to the laser's range
 /// if infinite, and unseen if NaN or outside the range \[REP 117\].
 ///
 /// # Errors
-/// When an angle or a limit is not finite, or the scan has no beam.
-pub fn from_ros(message: &LaserScan, stamp: Stamp, base_from_laser: &Pose2) -> Result<Scan, Invalid> {
-    let increment = require_finite("angle_increment", f64::from(message.angle_increment), "rad")?;
-    let (near, far) = (f64::from(message.range_min), f64::from(message.range_max));
-    require_in("range_max", far, "m", 0.1, 1000.0)?;
-    require_in("range_min", near, "m", 0.0, far)?;
-    let count = message.ranges.len();
-    if count == 0 || count > MAX_BEAMS {
-        return Err(Invalid::new("number of ranges", count, "", "1 to 100000"));
-    }
-    let beam = |range: &f32| match f64::from(*range) {
-        range if range == f64::INFINITY => Beam::Free { range: far },
-        range if range >= near && range <= far && range > 0.0 => Beam::Hit { range },
-        _ => Beam::Unseen,
+/// As [`LaserSweep::on_base`].
+pub fn from_ros(message: &LaserScan, stamp: Stamp, base_from_laser: &Pose3) -> Result<Scan, String> {
+    let sweep = LaserSweep {
+        stamp,
+        angle_min: f64::from(message.angle_min),
+        angle_increment: f64::from(message.angle_increment),
+        time_increment: f64::from(message.time_increment),
+        range_min: f64::from(message.range_min),
+        range_max: f64::from(message.range_max),
+        ranges: &message.ranges,
     };
-    let mut beams: Vec<Beam> = message.ranges.iter().map(beam).collect();
-    let mut first = f64::from(message.angle_min);
-    let mut times = BeamTimes { first_s: 0.0, step_s: f64::from(message.time_increment) };
-    if increment < 0.0 {
-        beams.reverse();
-        first += increment * (count - 1) as f64;
-        times = BeamTimes { first_s: times.of(count - 1), step_s: -times.step_s };
-    }
-    let origin = base_from_laser.position();
-    let scan = Scan::new(stamp, origin, first + base_from_laser.theta, increment.abs(), beams)?;
-    // Invalid times are ignored.
-    Ok(if times.step_s == 0.0 { scan } else { scan.clone().with_beam_times(times).unwrap_or(scan) })
+    sweep.on_base(base_from_laser, None, NoEcho::Free).map(|converted| converted.scan)
 }
 
 /// The scan as a message in the frame `frame`, at the scan's origin with the axes of the base. `far` is the range of beams without obstacle
@@ -65,6 +48,7 @@ pub fn to_ros(scan: &Scan, at: Stamp, frame: &str, far: f64) -> LaserScan {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trundle_core::Pose2;
 
     fn message(ranges: &[f32], increment: f32) -> LaserScan {
         let (angle_min, range_max) = (-0.5, 5.0);
@@ -77,26 +61,44 @@ mod tests {
         }
     }
 
+    /// The kinds of the beams and their ranges, rounded to micrometres.
+    fn beams(scan: &Scan) -> Vec<(&'static str, f64)> {
+        let rounded = |range: f64| (range * 1e6).round() / 1e6;
+        let kind = |beam: &Beam| match beam {
+            Beam::Hit { range } => ("hit", rounded(*range)),
+            Beam::Free { range } => ("free", rounded(*range)),
+            Beam::Unseen => ("unseen", 0.0),
+        };
+        scan.beams().iter().map(kind).collect()
+    }
+
     #[test]
     fn beams_follow_rep_117_and_a_turned_laser_is_turned() {
         let ranges = [1.0, f32::INFINITY, f32::NAN, 9.0, f32::NEG_INFINITY];
-        let on_base = Pose2::new(0.1, 0.0, std::f64::consts::PI);
+        let on_base = Pose3::from_pose2(Pose2::new(0.1, 0.0, std::f64::consts::PI));
         let scan = from_ros(&message(&ranges, 0.25), Stamp::default(), &on_base).unwrap();
-        let expected =
-            [Beam::Hit { range: 1.0 }, Beam::Free { range: 5.0 }, Beam::Unseen, Beam::Unseen, Beam::Unseen];
-        assert_eq!(scan.beams(), expected);
+        let unseen = ("unseen", 0.0);
+        assert_eq!(beams(&scan), [("hit", 1.0), ("free", 5.0), unseen, unseen, unseen]);
         assert!((scan.angle(0) - (std::f64::consts::PI - 0.5)).abs() < 1e-7);
-        let falling = from_ros(&message(&ranges, -0.25), Stamp::default(), &Pose2::IDENTITY).unwrap();
-        assert_eq!(falling.beams()[4], Beam::Hit { range: 1.0 });
+        let falling = from_ros(&message(&ranges, -0.25), Stamp::default(), &Pose3::identity()).unwrap();
+        assert_eq!(beams(&falling)[4], ("hit", 1.0));
         assert!((falling.angle(4) + 0.5).abs() < 1e-7);
     }
 
     #[test]
+    fn a_laser_upside_down_sweeps_the_other_way() {
+        let turn = nalgebra::UnitQuaternion::from_euler_angles(std::f64::consts::PI, 0.0, 0.0);
+        let mount = Pose3::new(turn, nalgebra::Vector3::zeros());
+        let scan = from_ros(&message(&[1.0, 2.0, 3.0], 0.25), Stamp::default(), &mount).unwrap();
+        assert_eq!(beams(&scan), [("hit", 3.0), ("hit", 2.0), ("hit", 1.0)]);
+        assert!((scan.angle(2) - 0.5).abs() < 1e-7, "{}", scan.angle(2));
+    }
+
+    #[test]
     fn broken_sweeps_are_refused() {
-        let refused = |message: LaserScan| {
-            from_ros(&message, Stamp::default(), &Pose2::IDENTITY).unwrap_err().to_string()
-        };
-        assert!(refused(message(&[], 0.1)).starts_with("number of ranges is 0"));
+        let refused =
+            |message: LaserScan| from_ros(&message, Stamp::default(), &Pose3::identity()).unwrap_err();
+        assert!(refused(message(&[], 0.1)).starts_with("0 ranges, expected 1 to 100000"));
         assert!(refused(message(&[1.0], f32::NAN)).starts_with("angle_increment is NaN"));
         assert!(
             refused(LaserScan { range_max: f32::NAN, ..message(&[1.0], 0.1) })
@@ -106,12 +108,10 @@ mod tests {
 
     #[test]
     fn a_scan_goes_there_and_back() {
+        let flat = Pose3::identity();
         let scan =
-            from_ros(&message(&[1.0, f32::INFINITY, f32::NAN], 0.25), Stamp::default(), &Pose2::IDENTITY)
-                .unwrap();
-        let back =
-            from_ros(&to_ros(&scan, Stamp::default(), "base_scan", 5.0), Stamp::default(), &Pose2::IDENTITY)
-                .unwrap();
-        assert_eq!(back.beams(), scan.beams());
+            from_ros(&message(&[1.0, f32::INFINITY, f32::NAN], 0.25), Stamp::default(), &flat).unwrap();
+        let sent = to_ros(&scan, Stamp::default(), "base_scan", 5.0);
+        assert_eq!(beams(&from_ros(&sent, Stamp::default(), &flat).unwrap()), beams(&scan));
     }
 }

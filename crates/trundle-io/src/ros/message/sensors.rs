@@ -9,7 +9,7 @@ const DEPTH_HEADER: [u8; 12] = [0; 12];
 /// Maximum range of a sweep by trundle \[m\]. Source: ours, more than any room.
 const MAX_RANGE_M: f32 = 100.0;
 /// Covariance of a quantity that was not measured. Source: sensor_msgs/msg/Imu.
-const NOT_MEASURED: f64 = -1.0;
+pub(in crate::ros) const NOT_MEASURED: f64 = -1.0;
 
 /// `sensor_msgs/msg/CompressedImage` of colour: the bytes of a JPEG or PNG.
 #[must_use]

@@ -1,7 +1,7 @@
 //! The images of a bag in pairs, in the order of their stamps: the second pass over it.
 
 use super::image_message::BagImage;
-use super::topic_choice::RosImageTopics;
+use super::sequence_topics::RosImageTopics;
 use crate::IoError;
 use crate::codec::{CodecError, EncodedRgbd};
 use crate::ros::bag::Bag;

@@ -8,6 +8,7 @@ use crate::ros::bag::Bag;
 use crate::ros::cdr::Wire;
 use crate::ros::contents::Contents;
 use crate::ros::messages::{Odometry, Transform, types};
+use crate::ros::robot_sensors::ImuTopics;
 use crate::{IoError, Warnings};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,6 +20,10 @@ pub(super) struct Survey {
     /// Odometry and transforms.
     pub(super) contents: Contents,
     images: BTreeMap<String, ImageStamps>,
+    /// Readings of IMUs.
+    pub(super) imus: ImuTopics,
+    /// Whether the scans of lasers are kept.
+    keeps_scans: bool,
     /// The first camera_info message of each topic.
     pub(super) infos: BTreeMap<String, CameraInfo>,
     /// True poses: the frame whose pose it is, and the pose.
@@ -40,9 +45,10 @@ fn is_truth(topic: &str) -> bool {
 }
 
 impl Survey {
-    /// Reads a bag. A broken message gives one warning with its topic; a truncated bag is read up to its end.
-    pub(super) fn read(path: &Path) -> Result<Self, IoError> {
-        let (mut survey, mut bag) = (Self::default(), Bag::open(path)?);
+    /// Reads a bag, with the scans of lasers if `keeps_scans`. A broken message gives one warning with its topic; a truncated bag is read up
+    /// to its end.
+    pub(super) fn read(path: &Path, keeps_scans: bool) -> Result<Self, IoError> {
+        let (mut survey, mut bag) = (Self { keeps_scans, ..Self::default() }, Bag::open(path)?);
         for number in 1.. {
             match bag.next_message() {
                 Ok(Some(message)) => {
@@ -51,7 +57,7 @@ impl Survey {
                     }
                 }
                 Ok(None) => break,
-                Err(error) if !survey.images.is_empty() => {
+                Err(error) if survey.has_sensors() => {
                     survey.warnings.add("the bag breaks off and is read up to there", &error.problem());
                     break;
                 }
@@ -81,7 +87,11 @@ impl Survey {
                 }
                 Ok(())
             }
-            types::LASER_SCAN => Ok(()),
+            types::LASER_SCAN if !self.keeps_scans => Ok(()),
+            types::IMU => {
+                let taken = self.imus.take(number, &message.topic, &message.data, wire);
+                taken.map_err(|error| error.to_string())
+            }
             types::ODOMETRY if is_truth(&message.topic) => {
                 let odometry = Odometry::read(&message.data, wire).map_err(|error| error.to_string())?;
                 self.truth.push((odometry.stamp, odometry.child, odometry.pose?));
@@ -95,6 +105,11 @@ impl Survey {
             }
             _ => self.contents.take(number, message, wire),
         }
+    }
+
+    /// Whether images or scans were read.
+    fn has_sensors(&self) -> bool {
+        !self.images.is_empty() || self.contents.has_scans()
     }
 
     fn take_image(&mut self, topic: &str, image: &BagImage) {

@@ -18,21 +18,6 @@ pub(super) struct ImageTopic {
     pub(super) count: usize,
 }
 
-/// The topics of a sequence's images.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct RosImageTopics {
-    /// Topic of the colour images.
-    pub color: String,
-    /// Topic of the depth images.
-    pub depth: String,
-    /// Topic of the camera's intrinsics; empty if a camera was given.
-    pub info: String,
-    /// Topic of the odometry; empty without odometry.
-    pub odometry: String,
-    /// Unused topics of images, with the number of their messages.
-    pub left: Vec<(String, usize)>,
-}
-
 /// Suffixes of topics for the transport of images.
 const TRANSPORTS: [&str; 3] = ["/compressed", "/compressedDepth", "/ffmpeg"];
 

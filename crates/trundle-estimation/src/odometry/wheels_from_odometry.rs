@@ -3,7 +3,7 @@
 use trundle_core::{DifferentialDrive, Odometry, Pose2, WheelTicks};
 
 /// Turns poses of odometry into counters of two wheels.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct WheelsFromOdometry {
     drive: DifferentialDrive,
     last: Option<Pose2>,
