@@ -7,6 +7,7 @@ mod contents;
 mod database;
 mod definitions;
 mod frames;
+mod hidden_topics;
 mod imu;
 mod laser_log;
 mod laser_scan;

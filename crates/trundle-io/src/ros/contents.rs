@@ -3,6 +3,7 @@
 use super::bag::Bag;
 use super::cdr::Wire;
 use super::frames::{Frames, NoTransform};
+use super::hidden_topics::is_hidden;
 use super::messages::{LaserScan, MessagePose, Odometry, Transform, types};
 use crate::IoError;
 use crate::laser_log::{LaserLogOptions, LaserLogSkip, Motion, chosen, is_named};
@@ -253,9 +254,11 @@ impl Contents {
         let name = |(topic, (kind, count)): (&String, &(String, usize))| {
             format!("{topic} ({kind}, {count} messages)")
         };
-        let mut names: Vec<String> = self.topics.iter().map(name).take(MAX_TOPICS_NAMED).collect();
-        if self.topics.len() > MAX_TOPICS_NAMED {
-            names.push(format!("{} more", self.topics.len() - MAX_TOPICS_NAMED));
+        let shown =
+            || self.topics.iter().filter(|(topic, (kind, _))| !is_hidden(topic, types::canonical(kind)));
+        let mut names: Vec<String> = shown().map(name).take(MAX_TOPICS_NAMED).collect();
+        if shown().count() > MAX_TOPICS_NAMED {
+            names.push(format!("{} more", shown().count() - MAX_TOPICS_NAMED));
         }
         if names.is_empty() { "none with messages in CDR".to_owned() } else { names.join(", ") }
     }

@@ -16,6 +16,11 @@ pub(in crate::ros) mod types {
     pub const CAMERA_INFO: &str = "sensor_msgs/msg/CameraInfo";
     pub const TRANSFORM: &str = "geometry_msgs/msg/TransformStamped";
 
+    /// Whether a type, by its name in ROS 2, is one of those that are read.
+    pub fn is_sensor(kind: &str) -> bool {
+        [LASER_SCAN, ODOMETRY, IMU, TF, IMAGE, COMPRESSED_IMAGE, CAMERA_INFO, TRANSFORM].contains(&kind)
+    }
+
     /// The name in ROS 2 of a type of either ROS.
     pub fn canonical(name: &str) -> &str {
         match name {

@@ -579,3 +579,20 @@ fn a_broken_ros1_bag_is_an_error_or_worth_what_it_holds() {
     assert!(cut.contains("the bag is truncated: ") && cut.contains("`rosbag reindex`"), "{cut}");
     assert!(read_bytes(b"#ROSBAG V1.2\n").unwrap_err().contains("format '#ROSBAG V1.2', expected"));
 }
+
+#[test]
+fn inner_topics_of_services_and_actions_are_not_listed_and_disturb_nothing() {
+    let event = (("/set/_service_event", "std_srvs/srv/SetBool_Event"), vec![0, 1, 0, 0, 7]);
+    let status = (("/go/_action/status", "action_msgs/msg/GoalStatusArray"), vec![0, 1, 0, 0]);
+    let feedback = (("/feedback", "nav2_msgs/action/NavigateToPose_FeedbackMessage"), Vec::new());
+    let messages = [event, odometry(1.0, 0.0), status, scan(1.0, &[1.0; 4]), feedback];
+    let log = log_of(&messages, "cdr").unwrap();
+    assert_eq!((log.scans.len(), log.skipped.len(), log.sources.left.len()), (1, 0, 0));
+    let file = tempfile::NamedTempFile::new().unwrap();
+    fs::write(file.path(), mcap_of(&messages, "cdr", None)).unwrap();
+    let topics = trundle_io::RosTopics::read(file.path()).unwrap();
+    let names: Vec<String> = topics.rows().map(|[name, ..]| name).collect();
+    assert_eq!(names, ["/odom", "/scan"]);
+    let problem = log_of(&messages[..3], "cdr").unwrap_err();
+    assert!(problem.ends_with("its topics: /odom (nav_msgs/msg/Odometry, 1 messages)"), "{problem}");
+}

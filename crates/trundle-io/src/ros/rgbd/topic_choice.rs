@@ -4,6 +4,7 @@ use super::image_message::{BagImage, ImageKind};
 use crate::IoError;
 use crate::laser_log::is_named;
 use crate::ros::bag::Bag;
+use crate::ros::hidden_topics::is_hidden;
 use crate::ros::messages::types;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -146,9 +147,10 @@ impl RosTopics {
         self.topics.values().any(|(kind, ..)| kinds.contains(&kind.as_str()))
     }
 
-    /// A row a topic: name, type, number of messages, encoding of its first image.
+    /// A row a topic: name, type, number of messages, encoding of its first image. Inner topics of services and actions have none.
     pub fn rows(&self) -> impl Iterator<Item = [String; 4]> + '_ {
-        self.topics.iter().map(|(name, (kind, count, encoding))| {
+        let shown = self.topics.iter().filter(|(name, (kind, ..))| !is_hidden(name, kind));
+        shown.map(|(name, (kind, count, encoding))| {
             [name.clone(), kind.clone(), count.to_string(), encoding.clone()]
         })
     }
