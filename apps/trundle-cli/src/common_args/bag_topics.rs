@@ -29,13 +29,7 @@ pub struct BagTopicsArgs {
 impl BagTopicsArgs {
     /// The topics.
     pub fn options(&self) -> RosSequenceOptions {
-        let mut options = RosSequenceOptions::default();
-        options.color_topic.clone_from(&self.color_topic);
-        options.depth_topic.clone_from(&self.depth_topic);
-        options.info_topic.clone_from(&self.info_topic);
-        options.odometry_topic.clone_from(&self.odom_topic);
-        options.imu_topic.clone_from(&self.imu_topic);
-        options.scan_topic.clone_from(&self.scan_topic);
-        options
+        let images = [&self.color_topic, &self.depth_topic, &self.info_topic];
+        RosSequenceOptions::of_topics(images, [&self.odom_topic, &self.imu_topic, &self.scan_topic])
     }
 }

@@ -21,6 +21,15 @@ pub struct RosSequenceOptions {
 }
 
 impl RosSequenceOptions {
+    /// The options with the topics of colour, depth and intrinsics, and those of odometry, IMU and laser.
+    #[must_use]
+    pub fn of_topics(images: [&Option<String>; 3], base: [&Option<String>; 3]) -> Self {
+        let [color_topic, depth_topic, info_topic] = images.map(Clone::clone);
+        let [odometry_topic, imu_topic, scan_topic] = base.map(Clone::clone);
+        let is_for_robot = false;
+        Self { color_topic, depth_topic, info_topic, odometry_topic, imu_topic, scan_topic, is_for_robot }
+    }
+
     /// Whether a topic of images is requested.
     #[must_use]
     pub fn names_images(&self) -> bool {
