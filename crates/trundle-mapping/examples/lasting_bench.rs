@@ -1,6 +1,8 @@
-//! Cost of the filter over a long time in one place: `cargo run --release -p trundle-mapping --example lasting_bench [SCANS]`
+//! Cost of the filter over a long time in one place: `cargo run --release -p trundle-mapping --example lasting_bench [SCANS]
+//! [--particles N] [--log FILE]`
 //!
-//! A robot circles in a furnished room of 10 x 8 m; each scan is processed. Prints processor time (with that of the simulated laser) and memory by tenths of the drive, and
+//! A robot circles in a furnished room of 10 x 8 m; each scan is processed. With `--log` the drive is written as a CARMEN log instead, for
+//! `bench/mapping/long_logs.py`. Prints processor time (with that of the simulated laser) and memory by tenths of the drive, and
 //! the slopes between the first and the last half.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs, reason = "a measurement for the terminal")]
 
@@ -10,7 +12,8 @@ mod flat_room;
 
 use flat_room::FlatRoom;
 use std::f64::consts::TAU;
-use trundle_core::{Pose2, Scan, ScanParts, Stamp};
+use std::io::Write;
+use trundle_core::{Beam, Pose2, Scan, ScanParts, Stamp};
 use trundle_mapping::{ParticleConfig, ParticleMapper};
 
 const BEAMS: usize = 360;
@@ -27,12 +30,14 @@ fn room() -> FlatRoom {
     ])
 }
 
-/// The pose after `k` steps around the room's middle, on ellipses that change slowly.
-fn pose(k: usize) -> Pose2 {
-    let distance = k as f64 * STEP_M;
-    let radius = 2.4 + 0.4 * (distance / 97.0).sin();
-    let angle = distance / radius.max(2.0);
-    Pose2::new(1.2 * radius * angle.cos(), radius * angle.sin(), angle + TAU / 4.0)
+/// Poses around the room's middle, on ellipses that change slowly.
+fn poses() -> impl Iterator<Item = Pose2> {
+    let mut angle = 0.0_f64;
+    (0..).map(move |k| {
+        let radius = 2.4 + 0.4 * (f64::from(k) * STEP_M / 97.0).sin();
+        angle += STEP_M / radius;
+        Pose2::new(1.2 * radius * angle.cos(), radius * angle.sin(), angle + TAU / 4.0)
+    })
 }
 
 /// About normal, sigma 1.
@@ -63,25 +68,65 @@ fn processor_s() -> f64 {
     (ticks(11) + ticks(12)) / TICKS_PER_SECOND
 }
 
-fn main() {
-    let scans: usize = std::env::args().nth(1).map_or(10_000, |count| count.parse().unwrap());
-    let (room, mut odom) = (room(), Pose2::IDENTITY);
-    let mut mapper = ParticleMapper::new(ParticleConfig::default(), 1).unwrap();
-    let (tenth, mut rows) = ((scans / 10).max(1), Vec::new());
-    for k in 0..scans {
-        let at = pose(k);
-        if k > 0 {
-            let step = pose(k - 1).inverse() * at;
+/// A step of the drive: true pose, odometry and scan.
+type Step = (Pose2, Pose2, Scan);
+
+fn drive(scans: usize) -> impl Iterator<Item = Step> {
+    let (room, mut odom, mut last) = (room(), Pose2::IDENTITY, None);
+    poses().take(scans).enumerate().map(move |(k, at)| {
+        if let Some(last) = last.replace(at) {
             let seed = 3 * k as u64;
             let slip =
                 Pose2::new(0.006 * noise(seed), 0.003 * noise(seed + 1), 0.004 * noise(seed + 2) + 0.001);
-            odom = odom * step * slip;
+            odom = odom * (last.inverse() * at) * slip;
         }
         let seen = room.scan(at, TAU, BEAMS, MAX_RANGE_M, |i| 0.01 * noise((k * BEAMS + i) as u64));
         let parts = ScanParts { beams: seen.beams().to_vec(), ..ScanParts::default() };
         let stamp = Stamp::from_secs(k as f64).unwrap();
         let scan = Scan::from_parts(stamp, seen.origin(), (seen.angle_min(), seen.angle_increment()), parts);
-        mapper.update(odom, &scan.unwrap());
+        (at, odom, scan.unwrap())
+    })
+}
+
+/// Number of beams of which one has no return in the log. Source: ours.
+const BEAMS_PER_MISS: usize = 97;
+
+/// Writes the drive as a CARMEN log with the field of view of a whole turn.
+fn write_log(file: &str, scans: usize) -> std::io::Result<()> {
+    let mut file = std::io::BufWriter::new(std::fs::File::create(file)?);
+    writeln!(file, "PARAM laser_front_laser_fov 360 nohost 0")?;
+    for (k, (_, odom, scan)) in drive(scans).enumerate() {
+        write!(file, "FLASER {BEAMS}")?;
+        for (i, beam) in scan.beams().iter().enumerate() {
+            match beam {
+                Beam::Hit { range } if (7 * k + i) % BEAMS_PER_MISS != 0 => write!(file, " {range:.3}")?,
+                _ => write!(file, " {MAX_RANGE_M:.3}")?,
+            }
+        }
+        let Pose2 { x, y, theta } = odom;
+        let pose = format!("{x:.6} {y:.6} {theta:.6}");
+        writeln!(file, " {pose} {pose} {} nohost {}", scan.stamp(), scan.stamp())?;
+    }
+    file.flush()
+}
+
+fn option(name: &str) -> Option<String> {
+    std::env::args().skip_while(|arg| arg != name).nth(1)
+}
+
+fn main() {
+    let scans: usize = std::env::args().nth(1).map_or(10_000, |count| count.parse().unwrap());
+    if let Some(file) = option("--log") {
+        return write_log(&file, scans).unwrap();
+    }
+    let mut config = ParticleConfig::default();
+    config.particles = option("--particles").map_or(config.particles, |count| count.parse().unwrap());
+    let mut mapper = ParticleMapper::new(config, 1).unwrap();
+    let (tenth, mut rows) = ((scans / 10).max(1), Vec::new());
+    let (mut first, mut last) = (None, Pose2::IDENTITY);
+    for (k, (at, odom, scan)) in drive(scans).enumerate() {
+        last = first.get_or_insert(at).inverse() * at;
+        mapper.update(odom, &scan);
         if (k + 1) % tenth == 0 {
             let spent = processor_s();
             rows.push((spent, mapper.bytes() as f64 / 1e6));
@@ -93,12 +138,11 @@ fn main() {
             );
         }
     }
-    let truth = pose(0).inverse() * pose(scans - 1);
-    println!("end: {:.3} m off", mapper.pose().distance(&truth));
+    println!("end: {:.3} m off", mapper.pose().distance(&last));
     println!("poses of the trajectory: {}", mapper.trajectory().len());
     let half = rows.len() / 2;
-    let (first, last) = (rows[half - 1], rows[rows.len() - 1]);
-    println!("time of the second half by that of the first: {:.2}", (last.0 - first.0) / first.0);
-    println!("memory at the end by that at the half: {:.2}", last.1 / first.1);
-    println!("time for a scan: {:.3} ms", last.0 / scans as f64 * 1e3);
+    let (middle, end) = (rows[half - 1], rows[rows.len() - 1]);
+    println!("time of the second half by that of the first: {:.2}", (end.0 - middle.0) / middle.0);
+    println!("memory at the end by that at the half: {:.2}", end.1 / middle.1);
+    println!("time for a scan: {:.3} ms", end.0 / scans as f64 * 1e3);
 }

@@ -43,7 +43,9 @@ pub use global_localization::{Localized, MapLocalizer};
 pub use grid_mapper::{GridMapper, Insertion};
 pub use particle_config::{MotionConfig, ParticleConfig, PosePriorConfig};
 pub use persist::FilterFileError;
-pub use rbpf::{MappingPause, ParticleMapper, Processed, Refusal, ScanUpdate, propagate_trajectory};
+pub use rbpf::{
+    MappingPause, ParticleMapper, Processed, Refusal, ScanUpdate, propagate_trajectory, propagated_poses,
+};
 pub use scan_log::{LiveMapper, Redrawn};
 pub use scan_match::{Lost, MatchedMap, ScanMatch, ScanMatchConfig, ScanMatcher};
 pub use trundle_grid::{Evidence, GridCell, LogOddsGrid, MapperConfig, RayCells, ray_cells};

@@ -2,6 +2,7 @@
 
 mod candidates;
 pub(crate) mod crowded_places;
+pub(crate) mod dropped_scans;
 pub(crate) mod loop_closer;
 pub(crate) mod scan_history;
 pub(crate) mod stored_scan;

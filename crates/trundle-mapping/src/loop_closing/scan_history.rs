@@ -1,5 +1,6 @@
 //! Stored scans, step covariances and closed loops of a run.
 
+use crate::loop_closing::dropped_scans::DroppedScans;
 use crate::loop_closing::stored_scan::StoredScan;
 use crate::pose_graph::Constraint;
 use nalgebra::Matrix3;
@@ -15,17 +16,7 @@ pub(crate) struct ScanHistory {
     /// The measured steps, up to the last correction, since a correction is no measurement.
     pub(crate) measured: Vec<Pose2>,
     pub(crate) loops: Vec<Constraint>,
-    /// Poses of the base at dropped scans.
-    left_out: Vec<LeftOutPose>,
-}
-
-/// Pose of the base at a dropped scan, relative to a stored one.
-#[derive(Debug, Clone, Copy)]
-struct LeftOutPose {
-    stamp: Stamp,
-    /// Number of the stored scan.
-    scan: u32,
-    scan_from_base: Pose2,
+    pub(crate) dropped: DroppedScans,
 }
 
 /// The stored scan that represents a scan after others were dropped.
@@ -65,6 +56,7 @@ impl ScanHistory {
     pub(crate) fn push(&mut self, scan: StoredScan, step: Matrix3<f64>) {
         self.scans.push(scan);
         self.steps.push(step);
+        self.dropped.push();
     }
 
     /// Records the steps of a trajectory that are not recorded yet.
@@ -99,13 +91,9 @@ impl ScanHistory {
             let Successor { number, old } = successors[k];
             (number as u32, if old == k { Pose2::IDENTITY } else { poses[old].inverse() * poses[k] })
         };
-        for left in &mut self.left_out {
-            let (number, step) = renamed(left.scan as usize);
-            (left.scan, left.scan_from_base) = (number, step * left.scan_from_base);
-        }
         for k in (0..goes.len()).filter(|&k| goes[k]) {
-            let (scan, scan_from_base) = renamed(k);
-            self.left_out.push(LeftOutPose { stamp: trajectory[k].0, scan, scan_from_base });
+            let earlier = successors[k].old;
+            self.dropped.note(trajectory[k].0, k, earlier, poses[earlier].inverse() * poses[k]);
         }
         for constraint in &mut self.loops {
             let (from, to_old_from) = renamed(constraint.from as usize);
@@ -122,6 +110,7 @@ impl ScanHistory {
         keep(&mut self.scans, goes);
         keep(&mut self.steps, goes);
         keep(&mut self.measured, goes);
+        self.dropped.thin(goes);
         keep(trajectory, goes);
     }
 
@@ -137,21 +126,12 @@ impl ScanHistory {
         self.loops = newest;
     }
 
-    /// A trajectory with the poses of stored and dropped scans, from the stored scan `first` on, by rising stamps.
-    pub(crate) fn with_left_out(&self, trajectory: &[(Stamp, Pose2)], first: usize) -> Vec<(Stamp, Pose2)> {
-        let left = self.left_out.iter().filter(|left| left.scan as usize >= first);
-        let poses = left.map(|left| (left.stamp, trajectory[left.scan as usize].1 * left.scan_from_base));
-        let mut all: Vec<_> = trajectory[first..].iter().copied().chain(poses).collect();
-        all.sort_by_key(|(stamp, _)| *stamp);
-        all
-    }
-
     /// Drops all scans but the first `count`, with their steps and loops.
     pub(crate) fn truncate(&mut self, count: usize) {
         self.scans.truncate(count);
         self.steps.truncate(count);
         self.measured.truncate(count);
-        self.left_out.retain(|left| (left.scan as usize) < count);
+        self.dropped.truncate(count);
         self.loops.retain(|constraint| constraint.poses().0.max(constraint.poses().1) < count);
     }
 
@@ -161,7 +141,7 @@ impl ScanHistory {
             + self.steps.capacity() * size_of::<Matrix3<f64>>()
             + self.measured.capacity() * size_of::<Pose2>()
             + self.loops.capacity() * size_of::<Constraint>()
-            + self.left_out.capacity() * size_of::<LeftOutPose>()
+            + self.dropped.bytes()
     }
 }
 
@@ -205,9 +185,11 @@ mod tests {
         history.thin(&mut thinned, &every_second(41, 20));
         assert_eq!((history.scans.len(), thinned.len(), history.measured.len()), (32, 32, 32));
         assert_eq!(thinned[0], path[0]);
-        let all = history.with_left_out(&thinned, 0);
-        assert!(all.iter().zip(&path).all(|(a, b)| a.0 == b.0 && a.1.distance(&b.1) < 1e-9));
-        assert_eq!(all.len(), path.len());
+        let is_path = |all: &[(Stamp, Pose2)]| {
+            all.len() == path.len()
+                && all.iter().zip(&path).all(|(a, b)| a.0 == b.0 && a.1.distance(&b.1) < 1e-5)
+        };
+        assert!(is_path(&history.dropped.whole(&thinned, 0)));
         assert_eq!(thinned.last(), path.last());
         let poses: Vec<Pose2> = thinned.iter().map(|(_, pose)| *pose).collect();
         for constraint in history.constraints(&poses) {
@@ -217,5 +199,12 @@ mod tests {
                 "{constraint:?}"
             );
         }
+        // A scan to which others are relative may be dropped as well.
+        history.thin(&mut thinned, &every_second(32, 30));
+        assert_eq!(history.scans.len(), 18);
+        assert!(is_path(&history.dropped.whole(&thinned, 0)));
+        history.truncate(10);
+        assert!(history.dropped.whole(&thinned[..10], 0).iter().zip(&path).all(|(a, b)| a.0 == b.0));
+        assert!(history.dropped.whole(&thinned[..10], 4)[0] == thinned[4]);
     }
 }

@@ -223,7 +223,7 @@ impl ParticleMapper {
 
     /// The best particle's poses at all processed scans of this run, including dropped ones.
     pub fn whole_trajectory(&self) -> Vec<(Stamp, Pose2)> {
-        self.loops.history.with_left_out(&self.set.trajectory(), self.set.first_pose_of_run)
+        self.loops.history.dropped.whole(&self.set.trajectory(), self.set.first_pose_of_run)
     }
 
     /// Map of the best particle. Only tiles written since the last call are updated.

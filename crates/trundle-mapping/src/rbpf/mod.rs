@@ -21,7 +21,7 @@ pub(crate) mod scan_update;
 pub(crate) mod update_gate;
 
 pub use mapper::ParticleMapper;
-pub use propagate::propagate_trajectory;
+pub use propagate::{propagate_trajectory, propagated_poses};
 pub use scan_update::{MappingPause, Processed, Refusal, ScanUpdate};
 
 #[cfg(test)]

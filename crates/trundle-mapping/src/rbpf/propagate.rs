@@ -10,18 +10,25 @@ pub fn propagate_trajectory(
     processed: &[(Stamp, Pose2)],
     odometry: &[(Stamp, Pose2)],
 ) -> Vec<(Stamp, Pose2)> {
+    propagated_poses(processed, odometry).collect()
+}
+
+/// The poses of [`propagate_trajectory`], one at a time.
+pub fn propagated_poses<'a>(
+    processed: &'a [(Stamp, Pose2)],
+    odometry: &'a [(Stamp, Pose2)],
+) -> impl Iterator<Item = (Stamp, Pose2)> + 'a {
     let odometry_at = |stamp: Stamp| {
         let i = odometry.partition_point(|(s, _)| *s < stamp);
         odometry.get(i).filter(|(s, _)| *s == stamp).map(|(_, pose)| *pose)
     };
-    let mut carried = Vec::with_capacity(odometry.len());
     let mut next = 0;
-    for &(stamp, odom_from_base) in odometry {
+    odometry.iter().filter_map(move |&(stamp, odom_from_base)| {
         while next < processed.len() && processed[next].0 <= stamp {
             next += 1;
         }
-        let Some(before) = next.checked_sub(1).map(|i| processed[i]) else { continue };
-        let Some(odom_before) = odometry_at(before.0) else { continue };
+        let before = processed[next.checked_sub(1)?];
+        let odom_before = odometry_at(before.0)?;
         let led = before.1 * (odom_before.inverse() * odom_from_base);
         let corrected = processed.get(next).and_then(|after| {
             let odom_after = odometry_at(after.0)?;
@@ -30,9 +37,8 @@ pub fn propagate_trajectory(
             let fraction = (stamp - before.0) / (after.0 - before.0);
             Some(led * Pose2::exp(error.log() * fraction))
         });
-        carried.push((stamp, corrected.unwrap_or(led)));
-    }
-    carried
+        Some((stamp, corrected.unwrap_or(led)))
+    })
 }
 
 #[cfg(test)]
