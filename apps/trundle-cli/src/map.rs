@@ -97,8 +97,8 @@ fn map(args: &MapLogArgs) -> Result<Outcome, AppError> {
     request.refuse_wrong_options(args.laser.first_given())?;
     let display = console::StepDisplay::new(args.common.quiet);
     let folder = logging::output_folder(&args.out)?;
-    let input = read_log(&request, &display)?;
-    let run = map_log(&request, args.localise, &input, &folder, &display)?;
+    let mut input = read_log(&request, &display)?;
+    let run = map_log(&request, args.localise, &mut input, &folder, &display)?;
     let place = folder.commit()?;
     // Warnings: skipped entries, impossible ranges, another mount of the laser.
     let warn = |problem: &dyn Display| console::warn(&format!("{}: {problem}", request.log.display()));

@@ -1,13 +1,17 @@
 //! Writer and reader of laser logs in the CARMEN format.
 
+mod laser_survey;
 mod line;
-mod lines;
 mod log;
 mod mount;
+mod parameters;
 mod ranges;
+mod scans;
+mod survey;
 mod text;
 
 pub use log::read_carmen;
+pub(crate) use scans::CarmenScans;
 
 use std::fmt::Write;
 use trundle_core::{Beam, Pose2, Scan, Stamp, Twist2};

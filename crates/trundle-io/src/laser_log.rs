@@ -5,18 +5,20 @@ mod motion;
 mod options;
 mod order;
 mod sources;
+mod statistics;
 mod sweep;
 
 pub use empty_map::{empty_map_cause, no_overlap_cause, no_return_cause, range_unit_hint};
-pub(crate) use motion::Motion;
+pub(crate) use motion::{Motion, pose_at};
 pub use options::LaserLogOptions;
-pub(crate) use order::{insert_in_order, require_order};
+pub(crate) use order::{OrderBuffer, insert_in_order};
 pub use sources::LaserLogSources;
 pub(crate) use sources::{chosen, is_named};
+pub use statistics::LaserLogStatistics;
 pub(crate) use sweep::{MAX_BEAMS, check_sweep};
 
 use crate::Warnings;
-use trundle_core::{Beam, Pose2, Scan, Stamp};
+use trundle_core::{Pose2, Scan, Stamp};
 
 /// A scan with the odometry of its moment.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,8 +50,10 @@ pub struct LaserLogSkip {
 /// The log of a laser with odometry.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LaserLog {
-    /// The scans, by rising stamps.
+    /// The scans, by rising stamps; empty if they are read one at a time.
     pub scans: Vec<LaserLogScan>,
+    /// Numbers of the scans that were read.
+    pub statistics: LaserLogStatistics,
     /// The poses by odometry, by rising stamps.
     pub odometry: Vec<(Stamp, Pose2)>,
     /// Lines or messages that were skipped.
@@ -69,12 +73,24 @@ pub struct LaserLog {
 }
 
 impl LaserLog {
+    /// A log of these scans, by rising stamps.
+    #[must_use]
+    pub fn of_scans(scans: impl IntoIterator<Item = LaserLogScan>) -> Self {
+        let mut log = Self::default();
+        scans.into_iter().for_each(|scan| log.push(scan));
+        log
+    }
+
+    /// Adds a scan that is not older than the last one.
+    pub fn push(&mut self, scan: LaserLogScan) {
+        self.statistics.count(&scan);
+        self.scans.push(scan);
+    }
+
     /// Number of scans without a return in any beam.
     #[must_use]
     pub fn scans_without_return(&self) -> usize {
-        let is_blind =
-            |scan: &&LaserLogScan| !scan.scan.beams().iter().any(|beam| matches!(beam, Beam::Hit { .. }));
-        self.scans.iter().filter(is_blind).count()
+        self.statistics.scans_without_return
     }
 
     /// Warnings about skipped messages and bad ranges, one per kind.

@@ -28,6 +28,7 @@ mod codec;
 mod csv;
 mod depth_statistics;
 mod error;
+mod even_sample;
 mod excerpt;
 mod file_kind;
 mod files;
@@ -56,11 +57,12 @@ pub use codec::{
 pub use csv::{curve_csv, table_csv, trajectory_csv, waypoints_csv};
 pub use depth_statistics::DepthStatistics;
 pub use error::{FrameError, IoError};
+pub use even_sample::EvenSample;
 pub use file_kind::{Expected, FileKind};
 pub use files::read_text;
 pub use laser_log::{
-    LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, LaserLogSources, LaserMount, empty_map_cause,
-    no_overlap_cause, no_return_cause, range_unit_hint,
+    LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, LaserLogSources, LaserLogStatistics, LaserMount,
+    empty_map_cause, no_overlap_cause, no_return_cause, range_unit_hint,
 };
 pub use map::{
     GraphFile, KeepOutFile, MAX_CELL_M, MIN_CELL_M, MapDescription, MapFile, MapImage, NamedArea, PictureMap,
@@ -75,8 +77,8 @@ pub use output::{
 pub use recording::{PoseInFrame, PosesInFrame, RecordedMessage, Recorder, RecordingCut, RecordingReader};
 pub use ros::message as ros_message;
 pub use ros::{
-    ConvertedScan, ImuReading, LaserSweep, NoEcho, RosFrame, RosFrames, RosImageTopics, RosSequence,
-    RosSequenceOptions, RosTopics, decode_compressed_depth, read_laser_log, read_ros_bag,
+    ConvertedScan, ImuReading, LaserLogScans, LaserSweep, NoEcho, RosFrame, RosFrames, RosImageTopics,
+    RosSequence, RosSequenceOptions, RosTopics, decode_compressed_depth, read_laser_log, read_ros_bag,
 };
 pub use sequence_camera::SequenceCamera;
 pub use stamp_text::parse_stamp;

@@ -30,7 +30,7 @@ use marker::{MARKER_FILE, RunMarker};
 use place::{OutputPlace, free_name, with_ending};
 use scratch::Scratch;
 use std::fs::{self, File};
-use std::io::{BufWriter, ErrorKind};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use writable::require_writable;
@@ -147,8 +147,28 @@ impl OutputFolder {
     /// # Errors
     /// When the file cannot be written for another reason; the error gives its final name.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), IoError> {
+        self.write_by(name, |path| fs::write(path, bytes))
+    }
+
+    /// Writes the file `name` piece by piece, as [`OutputFolder::write`] does at once.
+    ///
+    /// # Errors
+    /// As [`OutputFolder::write`].
+    pub fn write_pieces(
+        &self,
+        name: &str,
+        write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+    ) -> Result<(), IoError> {
+        self.write_by(name, |path| {
+            let mut file = BufWriter::new(File::create(path)?);
+            write(&mut file)?;
+            file.flush()
+        })
+    }
+
+    fn write_by(&self, name: &str, write: impl FnOnce(&Path) -> std::io::Result<()>) -> Result<(), IoError> {
         let path = self.staged(name);
-        match self.make_subfolders(name).and_then(|()| fs::write(&path, bytes)) {
+        match self.make_subfolders(name).and_then(|()| write(&path)) {
             Err(error) if is_refusal_of_disk(&error) => {
                 let _ = fs::remove_file(&path);
                 self.leave_out(IoError::system(&self.target().join(name), "write")(error));

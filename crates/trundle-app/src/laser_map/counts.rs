@@ -6,6 +6,8 @@ use trundle_mapping::{Localized, MappingPause, Processed, ScanUpdate};
 /// Numbers of scans of a log, by the filter's result.
 #[derive(Debug, Default)]
 pub struct ScanCounts {
+    /// Scans of the log, those that were not read included.
+    pub in_log: usize,
     /// Scans that the filter received: all of a log that was read to its end.
     pub read: usize,
     /// Scans inserted into the map or localized in it.

@@ -61,7 +61,7 @@ pub fn read(
         match scan(i, &frame, &poses, (&mut scanner, &mut depth)) {
             Ok(scan) => {
                 log.odometry.push((stamp, scan.odom_from_base));
-                log.scans.push(scan);
+                log.push(scan);
                 last = Some(stamp);
             }
             Err(problem) => log.skipped.push(LaserLogSkip { line: i + 1, problem }),
@@ -85,7 +85,7 @@ pub fn read(
         _ => {
             let by_wheels = tracked.is_none() && input.odometry().is_some();
             let depth = DepthLog { scan: robot.scan.clone(), blind_range: scanner.blind_range(), by_wheels };
-            Ok(LogInput { log, depth: Some(depth), cut_report: input.cut_report().map(str::to_owned) })
+            Ok(LogInput::in_memory(log, Some(depth), input.cut_report().map(str::to_owned)))
         }
     }
 }
@@ -122,7 +122,7 @@ pub fn of_laser(run: &RecordedRun, file: &Path) -> Result<LogInput, AppError> {
         match neighbours(odometry, stamp) {
             Some((a, b, part)) => {
                 let odom_from_base = a.interpolate(&b, part);
-                log.scans.push(LaserLogScan { odom_from_base, scan: scan.clone() });
+                log.push(LaserLogScan { odom_from_base, scan: scan.clone() });
             }
             None => {
                 let problem = format!("no odometry about {stamp} s");
@@ -134,7 +134,7 @@ pub fn of_laser(run: &RecordedRun, file: &Path) -> Result<LogInput, AppError> {
         return Err(refused("no scan can be used: none has odometry about its time"));
     }
     run.warn_of_cut();
-    Ok(LogInput { log, depth: None, cut_report: run.cut_report().map(str::to_owned) })
+    Ok(LogInput::in_memory(log, None, run.cut_report().map(str::to_owned)))
 }
 
 /// The source of the base's poses.

@@ -1,31 +1,24 @@
 //! The scans of a CARMEN log, a bag, a recording of trundle, or an RGB-D folder whose depth images become scans.
 
-use super::depth_scans::{self, neighbours};
-use super::log_input::LogInput;
+use super::depth_scans;
+use super::log_input::{LogInput, LogScans};
 use super::request::LaserMapRequest;
 use crate::sequence_input::{RecordedRun, SequenceInput, SequenceOptions};
 use crate::{AppError, StepProgress};
-use trundle_core::deskewed;
-use trundle_io::{FileKind, LaserLog, read_laser_log};
+use trundle_io::{FileKind, LaserLogScans};
 
-/// Reads the log. Its scans are deskewed if the log allows it and the request asks for it.
+/// Opens the log. The scans of bags and CARMEN logs are read one at a time, those of other logs are read here. Scans are deskewed if the log
+/// allows it and the request asks for it.
 ///
 /// # Errors
 /// Names the file and the invalid line or frame.
 pub fn read_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Result<LogInput, AppError> {
-    let mut input = read_raw_log(request, progress)?;
-    if request.deskew {
-        let LaserLog { scans, odometry, .. } = &mut input.log;
-        for entry in scans.iter_mut().filter(|entry| entry.scan.beam_times().is_some()) {
-            let pose = |stamp| neighbours(odometry, stamp).map(|(a, b, part)| a.interpolate(&b, part));
-            entry.scan = deskewed(entry.scan.clone(), pose);
-        }
-    }
-    Ok(input)
+    let input = open_log(request, progress)?;
+    Ok(LogInput { is_deskewed: request.deskew, ..input })
 }
 
 /// Reads the log: RGB-D images of a folder or a recording, the scans of a recording's laser, a bag or a CARMEN log.
-fn read_raw_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Result<LogInput, AppError> {
+fn open_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Result<LogInput, AppError> {
     let options = SequenceOptions {
         recover: request.recover,
         topics: request.topics.clone(),
@@ -44,8 +37,9 @@ fn read_raw_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Resul
             SequenceInput::open(&options)?
         }
         _ => {
-            let log = read_laser_log(&request.log, &request.laser)?;
-            return Ok(LogInput { log, depth: None, cut_report: None });
+            let (log, scans) = LaserLogScans::open(&request.log, &request.laser)?;
+            let scans = LogScans::File(scans);
+            return Ok(LogInput { scans, ..LogInput::in_memory(log, None, None) });
         }
     };
     depth_scans::read(&input, request.poses.as_deref(), progress)

@@ -1,7 +1,7 @@
 //! The stretches of a log over which the pose is known, and the trajectory along them.
 
 use trundle_core::{Pose2, Stamp};
-use trundle_mapping::propagate_trajectory;
+use trundle_mapping::propagated_poses;
 
 /// Stretches without a pose: from the first scan without one to the next with one.
 #[derive(Debug, Default)]
@@ -24,26 +24,26 @@ impl KnownStretches {
         }
     }
 
-    /// The poses at all stamps of `odometry` from those of some of them, as [`propagate_trajectory`] gives them, without the
+    /// The poses at all stamps of `odometry` from those of some of them, as [`propagated_poses`] gives them, without the
     /// stamps in a gap. A stretch ends with its last processed scan.
-    pub fn trajectory(
+    pub fn trajectory<'a>(
         &self,
-        processed: &[(Stamp, Pose2)],
-        odometry: &[(Stamp, Pose2)],
-    ) -> Vec<(Stamp, Pose2)> {
-        let mut trajectory = Vec::new();
+        processed: &'a [(Stamp, Pose2)],
+        odometry: &'a [(Stamp, Pose2)],
+    ) -> impl Iterator<Item = (Stamp, Pose2)> + use<'a> {
+        let mut stretches = Vec::new();
         let (mut rest, mut odometry) = (processed, odometry);
         for (since, until) in &self.gaps {
             let (known, after) = rest.split_at(rest.partition_point(|(stamp, _)| stamp < since));
             let end =
                 known.last().map_or(0, |(last, _)| odometry.partition_point(|(stamp, _)| stamp <= last));
-            trajectory.extend(propagate_trajectory(known, &odometry[..end]));
+            stretches.push((known, &odometry[..end]));
             rest = after;
             let next = until.map_or(odometry.len(), |until| odometry.partition_point(|(s, _)| *s < until));
             odometry = &odometry[next..];
         }
-        trajectory.extend(propagate_trajectory(rest, odometry));
-        trajectory
+        stretches.push((rest, odometry));
+        stretches.into_iter().flat_map(|(known, odometry)| propagated_poses(known, odometry))
     }
 }
 
@@ -63,12 +63,12 @@ mod tests {
         known.lose(stamp(9));
         known.find(stamp(14));
         known.lose(stamp(18));
-        let trajectory = known.trajectory(&processed, &odometry);
+        let trajectory: Vec<_> = known.trajectory(&processed, &odometry).collect();
         let stamps: Vec<i64> = trajectory.iter().map(|(s, _)| s.nanos / 1_000_000_000).collect();
         assert_eq!(stamps, [2, 3, 4, 5, 6, 14, 15, 16]);
         let is_straight = |(s, pose): &(Stamp, Pose2)| pose.y == if *s < stamp(7) { 0.0 } else { 9.0 };
         assert!(trajectory.iter().all(is_straight), "{trajectory:?}");
         let whole = KnownStretches::default().trajectory(&processed, &odometry);
-        assert_eq!(whole, propagate_trajectory(&processed, &odometry));
+        assert!(whole.eq(propagated_poses(&processed, &odometry)));
     }
 }

@@ -1,26 +1,15 @@
 //! The search for the mount of a laser that the odometry does not contradict: mirrored, and turned.
 
 use super::counts::ScanCounts;
+use super::mount_steps::{MountSteps, Step};
 use std::f64::consts::{FRAC_PI_2, TAU};
-use trundle_core::{Pose2, Vector2, wrap_angle};
-use trundle_io::{LaserLog, LaserLogScan, LaserMount};
+use trundle_core::{Vector2, wrap_angle};
+use trundle_io::{LaserLogScan, LaserMount};
 
-/// Largest number of steps of each kind that are compared. Source: ours.
-const MAX_STEPS: usize = 24;
 /// Number of steps below which the mount is not evaluated. Source: ours.
 const MIN_STEPS: usize = 8;
 /// Largest number of points of a scan that are compared. Source: ours.
 const MAX_POINTS: usize = 180;
-/// Minimum turn of a step that reveals a mirrored laser \[rad\]. Source: ours.
-const MIN_STEP_TURN_RAD: f64 = 0.15;
-/// Largest turn of a step \[rad\]. Two scans farther apart share too little. Source: ours.
-const MAX_STEP_TURN_RAD: f64 = 0.8;
-/// Minimum length of a step that reveals a turned laser \[m\]: at a turn of 10 degrees it displaces the scan by 9 cm. Source: ours.
-const MIN_STEP_LENGTH_M: f64 = 0.5;
-/// Largest length of a step \[m\]. Two scans farther apart share too little. Source: ours.
-const MAX_STEP_LENGTH_M: f64 = 1.0;
-/// Number of scans after the first among which a step ends. Source: ours.
-const MAX_STEP_SCANS: usize = 40;
 /// Smallest distance at which a point has no match \[m\]. Source: ours.
 const MAX_MATCH_DISTANCE_M: f64 = 0.3;
 /// Largest distance of the ends of neighbouring beams on one surface \[m\]: beams of 5 degrees on a wall at 3 m, 60 degrees aslant. Source:
@@ -45,12 +34,12 @@ const MIN_SHARE_NOT_BELIEVED: f64 = 0.3;
 /// Number of scans below which that share is not evaluated. Source: ours.
 const MIN_SCANS: usize = 10;
 
-/// A sentence for a log whose laser is probably mounted differently, or whose scans contradict the odometry at many steps.
-pub(super) fn mount_hint(log: &LaserLog, counts: &ScanCounts) -> Option<String> {
+/// A sentence for a log whose laser is probably not mounted as `taken`, or whose scans contradict the odometry at many steps.
+pub(super) fn mount_hint(taken: LaserMount, steps: MountSteps, counts: &ScanCounts) -> Option<String> {
     let (doubted, all) = (counts.slips + counts.jumps, counts.processed);
     let is_doubted = all >= MIN_SCANS && doubted as f64 >= MIN_SHARE_NOT_BELIEVED * all as f64;
     let contradiction = format!("the scans contradict the odometry at {doubted} of {all} steps");
-    match better_mount(log).and_then(|mount| described(mount, log.mount)) {
+    match better_mount(taken, &steps.finish()).and_then(|mount| described(mount, taken)) {
         Some(mount) if is_doubted => Some(format!("{contradiction}: {mount}")),
         Some(mount) => Some(format!("the scans fit the odometry better with another mount: {mount}")),
         None if is_doubted => Some(format!(
@@ -92,19 +81,18 @@ fn described(mount: LaserMount, taken: LaserMount) -> Option<String> {
     Some(format!("the laser seems to be mounted {how}: {options}"))
 }
 
-/// The mount that fits the odometry of the log's steps clearly better than the given mount; `None` if no mount does.
-pub(super) fn better_mount(log: &LaserLog) -> Option<LaserMount> {
-    let steps = steps(&log.scans);
+/// The mount that fits the odometry of the steps clearly better than the mount `given`; `None` if no mount does.
+fn better_mount(given: LaserMount, steps: &[Step]) -> Option<LaserMount> {
     if steps.len() < MIN_STEPS {
         return None;
     }
-    let taken = mean_error(&steps, Reading { is_mirrored: false, turn: 0.0 })?;
-    let (quarter_error, quarter) = best_reading(&steps, mounts_by_quarters(log.mount))?;
-    let (turned_error, turned) = best_turn(&steps)?;
+    let taken = mean_error(steps, Reading { is_mirrored: false, turn: 0.0 })?;
+    let (quarter_error, quarter) = best_reading(steps, mounts_by_quarters(given))?;
+    let (turned_error, turned) = best_turn(steps)?;
     // Most lasers are mounted by quarters of a turn, and beams far apart blur the error: another angle has to fit better than these.
     let is_turned = is_better(turned_error, quarter_error, MAX_TURNED_SHARE);
     let (error, best) = if is_turned { (turned_error, turned) } else { (quarter_error, quarter) };
-    is_better(error, taken, MAX_ERROR_SHARE).then(|| best.applied_to(log.mount))
+    is_better(error, taken, MAX_ERROR_SHARE).then(|| best.applied_to(given))
 }
 
 /// Whether an error is below a share of the other, and by more than the noise.
@@ -113,7 +101,7 @@ fn is_better(error: f64, other: f64, share: f64) -> bool {
 }
 
 /// The reading with the smallest mean error, and this error, m.
-fn best_reading(steps: &[Step<'_>], readings: impl IntoIterator<Item = Reading>) -> Option<(f64, Reading)> {
+fn best_reading(steps: &[Step], readings: impl IntoIterator<Item = Reading>) -> Option<(f64, Reading)> {
     let errors = readings.into_iter().filter_map(|reading| Some((mean_error(steps, reading)?, reading)));
     errors.min_by(|(a, _), (b, _)| a.total_cmp(b))
 }
@@ -133,7 +121,7 @@ fn mounts_by_quarters(mount: LaserMount) -> impl Iterator<Item = Reading> {
 }
 
 /// The best reading at any angle: a search at coarse steps, then at half the step around the best angle, down to half a degree.
-fn best_turn(steps: &[Step<'_>]) -> Option<(f64, Reading)> {
+fn best_turn(steps: &[Step]) -> Option<(f64, Reading)> {
     let mut best = best_reading(steps, readings_every(COARSE_TURN_STEP_RAD))?;
     let mut step = COARSE_TURN_STEP_RAD / 2.0;
     while step > MIN_TURN_DIFFERENCE_RAD / 2.0 {
@@ -168,47 +156,13 @@ impl Reading {
     }
 }
 
-/// Two scans, and the later base seen from the earlier by odometry.
-struct Step<'a> {
-    first: &'a LaserLogScan,
-    second: &'a LaserLogScan,
-    first_from_second: Pose2,
-}
-
-/// Steps that turn and steps that lead on, spread over the log.
-fn steps(scans: &[LaserLogScan]) -> Vec<Step<'_>> {
-    let is_near =
-        |step: &Pose2| step.theta.abs() < MAX_STEP_TURN_RAD && step.position().norm() < MAX_STEP_LENGTH_M;
-    let turns = |step: &Pose2| is_near(step) && step.theta.abs() >= MIN_STEP_TURN_RAD;
-    let leads_on = |step: &Pose2| is_near(step) && step.position().norm() >= MIN_STEP_LENGTH_M;
-    let mut found = spread(steps_of(scans, &turns));
-    found.extend(spread(steps_of(scans, &leads_on)));
-    found
-}
-
-/// The first accepted step from each scan.
-fn steps_of<'a>(scans: &'a [LaserLogScan], is_wanted: &dyn Fn(&Pose2) -> bool) -> Vec<Step<'a>> {
-    let step_from = |(i, first): (usize, &'a LaserLogScan)| {
-        let later = scans[i + 1..].iter().take(MAX_STEP_SCANS);
-        let mut steps = later.map(|second| (second, first.odom_from_base.inverse() * second.odom_from_base));
-        let (second, first_from_second) = steps.find(|(_, step)| is_wanted(step))?;
-        Some(Step { first, second, first_from_second })
-    };
-    scans.iter().enumerate().filter_map(step_from).collect()
-}
-
-fn spread(steps: Vec<Step<'_>>) -> Vec<Step<'_>> {
-    let stride = steps.len().div_ceil(MAX_STEPS).max(1);
-    steps.into_iter().step_by(stride).collect()
-}
-
 /// The mean distance of the points of the later scans from the surfaces of the earlier ones, m, without the farthest points: those have no
 /// surface in the earlier scan. `None` without points.
-fn mean_error(steps: &[Step<'_>], reading: Reading) -> Option<f64> {
+fn mean_error(steps: &[Step], reading: Reading) -> Option<f64> {
     let mut errors = Vec::new();
     for step in steps {
-        let first = points(step.first, reading);
-        for point in points(step.second, reading) {
+        let first = points(&step.first, reading);
+        for point in points(&step.second, reading) {
             let point = step.first_from_second.transform(point);
             let distances = first.iter().zip(first.iter().skip(1).chain(first.last()));
             let distances = distances.map(|(a, b)| squared_distance(point, *a, *b));
@@ -241,7 +195,9 @@ fn points(scan: &LaserLogScan, reading: Reading) -> Vec<Vector2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trundle_core::{Beam, Scan, Stamp};
+    use std::sync::Arc;
+    use trundle_core::{Beam, Pose2, Scan, Stamp};
+    use trundle_io::LaserLog;
 
     /// A simulated drive along a curve in a room of 6 x 4 m with a box; the laser is mounted as `truth` and its log claims an upright laser
     /// at heading 0.
@@ -265,7 +221,7 @@ mod tests {
             let scan = Scan::new(stamp, Vector2::zeros(), -2.0, step, beams).unwrap();
             LaserLogScan { odom_from_base, scan }
         });
-        LaserLog { scans: scans.collect(), ..LaserLog::default() }
+        LaserLog::of_scans(scans)
     }
 
     /// The range to the walls and to a box at a wall, m.
@@ -281,17 +237,31 @@ mod tests {
             .unwrap_or(6.0)
     }
 
+    fn steps(log: &LaserLog) -> MountSteps {
+        let mut steps = MountSteps::default();
+        log.scans.iter().for_each(|scan| steps.take(&Arc::new(scan.clone())));
+        steps
+    }
+
+    fn better(log: &LaserLog) -> Option<LaserMount> {
+        better_mount(log.mount, &steps(log).finish())
+    }
+
+    fn hint_for(log: &LaserLog, counts: &ScanCounts) -> Option<String> {
+        mount_hint(log.mount, steps(log), counts)
+    }
+
     #[test]
     fn a_laser_as_it_is_read_has_no_better_mount() {
-        assert_eq!(better_mount(&drive(LaserMount::default())), None);
-        assert_eq!(better_mount(&LaserLog::default()), None);
+        assert_eq!(better(&drive(LaserMount::default())), None);
+        assert_eq!(better(&LaserLog::default()), None);
     }
 
     #[test]
     fn mirrored_and_turned_lasers_are_named() {
         for (quarters, upside_down) in [(-1.0, false), (2.0, false), (0.0, true), (1.0, true)] {
             let truth = LaserMount { turn: quarters * FRAC_PI_2, upside_down };
-            let found = better_mount(&drive(truth)).unwrap();
+            let found = better(&drive(truth)).unwrap();
             assert_eq!(found.upside_down, upside_down, "{truth:?}: {found:?}");
             assert!(wrap_angle(found.turn - truth.turn).abs() < 1e-9, "{truth:?}: {found:?}");
         }
@@ -303,7 +273,7 @@ mod tests {
             [(45.0_f64, false), (-135.0, false), (30.0, true), (67.0, false), (10.0, false), (-10.0, true)];
         for (degrees, upside_down) in turns {
             let truth = LaserMount { turn: degrees.to_radians(), upside_down };
-            let found = better_mount(&drive(truth)).unwrap();
+            let found = better(&drive(truth)).unwrap();
             assert_eq!(found.upside_down, upside_down, "{truth:?}: {found:?}");
             let error = wrap_angle(found.turn - truth.turn).abs();
             assert!(error < 2.0_f64.to_radians(), "{truth:?}: {found:?}");
@@ -318,9 +288,9 @@ mod tests {
                 let truth = LaserMount { turn: degrees.to_radians(), upside_down: false };
                 drive_with(truth, beams, step_deg.to_radians())
             };
-            assert_eq!(better_mount(&log(0.0)), None, "{step_deg}");
+            assert_eq!(better(&log(0.0)), None, "{step_deg}");
             for degrees in [10.0_f64, -10.0, 20.0, 30.0, -30.0, 45.0, 120.0] {
-                let found = better_mount(&log(degrees)).unwrap();
+                let found = better(&log(degrees)).unwrap();
                 let error = wrap_angle(found.turn - degrees.to_radians()).abs();
                 assert!(
                     error < 3.0_f64.to_radians() && !found.upside_down,
@@ -334,7 +304,7 @@ mod tests {
     fn a_hint_names_the_options() {
         let hint = |truth| {
             let counts = ScanCounts { processed: 60, slips: 40, ..ScanCounts::default() };
-            mount_hint(&drive(truth), &counts).unwrap()
+            hint_for(&drive(truth), &counts).unwrap()
         };
         let upside_down = hint(LaserMount { turn: 0.0, upside_down: true });
         assert_eq!(
@@ -345,9 +315,9 @@ mod tests {
         assert!(turned.ends_with("mounted turned by 90 deg: try --laser-turn=90"), "{turned}");
         assert!(hint(LaserMount::default()).contains("no other mount"));
         let few = ScanCounts { processed: 60, slips: 10, ..ScanCounts::default() };
-        assert_eq!(mount_hint(&drive(LaserMount::default()), &few), None);
+        assert_eq!(hint_for(&drive(LaserMount::default()), &few), None);
         let behind = LaserMount { turn: std::f64::consts::PI, upside_down: false };
-        let found = mount_hint(&drive(behind), &few).unwrap();
+        let found = hint_for(&drive(behind), &few).unwrap();
         assert!(
             found.starts_with("the scans fit the odometry better with another mount: the laser"),
             "{found}"

@@ -4,7 +4,7 @@ use super::log_input::LogInput;
 use super::request::LaserMapRequest;
 use super::run_result::LaserMapRun;
 use std::collections::BTreeMap;
-use std::fmt::Write;
+use std::io;
 use trundle_core::{OccupancyGrid, Pose2, Stamp};
 use trundle_io::{LaserLog, LaserLogSources, Summary};
 use trundle_viz::{Color, LineStyle, MapPicture, PoseStyle};
@@ -27,14 +27,18 @@ pub fn map_picture(grid: &OccupancyGrid, poses: &[(Stamp, Pose2)]) -> Vec<u8> {
     picture.pose("start", *start, first).pose("end", *end, last).to_png()
 }
 
-/// `t x y theta` lines: s, m, m, rad.
-#[must_use]
-pub fn trajectory_lines(trajectory: &[(Stamp, Pose2)]) -> String {
-    let mut text = String::new();
+/// Writes `t x y theta` lines: s, m, m, rad.
+///
+/// # Errors
+/// Those of `file`.
+pub fn write_trajectory_lines(
+    file: &mut dyn io::Write,
+    trajectory: impl Iterator<Item = (Stamp, Pose2)>,
+) -> io::Result<()> {
     for (stamp, pose) in trajectory {
-        writeln!(text, "{stamp} {:.6} {:.6} {:.6}", pose.x, pose.y, pose.theta).expect("invariant: a String");
+        writeln!(file, "{stamp} {:.6} {:.6} {:.6}", pose.x, pose.y, pose.theta)?;
     }
-    text
+    Ok(())
 }
 
 /// The table of a mapped log.
@@ -44,7 +48,7 @@ pub fn map_rows(log: &LaserLog, run: &LaserMapRun) -> Vec<Vec<String>> {
     let counts = &run.counts;
     let mut rows = source_rows(&log.sources);
     rows.extend([
-        row("scans", log.scans.len().to_string()),
+        row("scans", counts.in_log.to_string()),
         row("scans read", counts.read.to_string()),
         row("scans without a return", log.scans_without_return().to_string()),
         row("invalid ranges", log.bad_ranges.to_string()),
@@ -96,7 +100,7 @@ pub fn summary(request: &LaserMapRequest, input: &LogInput, run: &LaserMapRun) -
         .set("scan_topic", topic(&log.sources.scans))
         .set("odometry_topic", topic(&log.sources.odometry))
         .set("topics_left", serde_json::json!(log.sources.left.iter().cloned().collect::<BTreeMap<_, _>>()))
-        .set("scans", log.scans.len())
+        .set("scans", counts.in_log)
         .set("scans_read", counts.read)
         .set("scans_without_return", log.scans_without_return())
         .set("processed", counts.processed)

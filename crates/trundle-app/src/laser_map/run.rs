@@ -4,63 +4,79 @@ use super::counts::ScanCounts;
 use super::known_stretches::KnownStretches;
 use super::log_input::LogInput;
 use super::mount_check::mount_hint;
-use super::numbers::{map_picture, summary, trajectory_lines};
+use super::mount_steps::MountSteps;
+use super::numbers::{map_picture, summary, write_trajectory_lines};
 use super::request::LaserMapRequest;
 use super::run_result::LaserMapRun;
 use crate::{AppError, StepProgress, stop};
+use std::sync::Arc;
 use std::time::Instant;
-use trundle_core::{Pose2, Stamp};
-use trundle_io::{LaserLog, OutputFolder, range_unit_hint, write_map_as};
+use trundle_core::{OccupancyGrid, Pose2, Stamp};
+use trundle_io::{LaserLogScan, OutputFolder, range_unit_hint, write_map_as};
 use trundle_mapping::{Localized, MapLocalizer, ParticleMapper, ScanUpdate};
+
+/// What remains of the scans of a log after their processing.
+#[derive(Debug, Default)]
+struct ProcessedLog {
+    counts: ScanCounts,
+    known: KnownStretches,
+    /// odom_from_base at each scan.
+    odometry: Vec<(Stamp, Pose2)>,
+    /// map_from_base at the processed scans.
+    poses: Vec<(Stamp, Pose2)>,
+    steps: MountSteps,
+    /// Memory of maps, scans and trajectories, MB.
+    megabytes: f64,
+}
 
 /// Maps a log, or with `localize_only` localizes the robot in the requested map; writes trajectory, map, picture and summary.
 ///
 /// # Errors
-/// When the map cannot be read, a setting is invalid or a file cannot be written.
+/// When the log or the map cannot be read, a setting is invalid or a file cannot be written.
 pub fn map_log(
     request: &LaserMapRequest,
     localize_only: bool,
-    input: &LogInput,
+    input: &mut LogInput,
     folder: &OutputFolder,
     progress: &dyn StepProgress,
 ) -> Result<LaserMapRun, AppError> {
-    let LogInput { log, depth, .. } = input;
-    let odometry: Vec<(Stamp, Pose2)> =
-        log.scans.iter().map(|s| (s.scan.stamp(), s.odom_from_base)).collect();
     let start = Instant::now();
-    let (counts, known, poses, megabytes, failure) = match &request.map {
+    let (done, failure) = match &request.map {
         Some(file) if localize_only => {
-            let mut localizer = request.localizer(file, depth.as_ref())?;
-            let (counts, known, poses) = localize(log, &mut localizer, progress);
-            folder.write("overview.png", &map_picture(&localizer.grid(), &poses))?;
-            let failure = LaserMapRun::failure_of(log, &counts, None, stop::stopped().is_some());
-            (counts, known, poses, 0.0, failure)
+            let mut localizer = request.localizer(file, input.depth.as_ref())?;
+            let done = localize(input, &mut localizer, progress)?;
+            folder.write("overview.png", &map_picture(&localizer.grid(), &done.poses))?;
+            let failure = failure(input, &done, None);
+            (done, failure)
         }
         _ => {
-            let mut mapper = request.mapper(depth.as_ref())?;
-            let (counts, known) = map(log, &mut mapper, progress);
+            let mut mapper = request.mapper(input.depth.as_ref())?;
+            let done = map(input, &mut mapper, progress)?;
             write_map_as(folder, "map", mapper.grid(), request.map_image)?;
-            let poses = mapper.whole_trajectory();
-            folder.write("overview.png", &map_picture(mapper.grid(), &poses))?;
+            folder.write("overview.png", &map_picture(mapper.grid(), &done.poses))?;
             folder.write("filter.map", &mapper.save())?;
-            let failure =
-                LaserMapRun::failure_of(log, &counts, Some(mapper.grid()), stop::stopped().is_some());
-            (counts, known, poses, mapper.bytes() as f64 / 1e6, failure)
+            let failure = failure(input, &done, Some(mapper.grid()));
+            (done, failure)
         }
     };
     let seconds = start.elapsed().as_secs_f64();
+    let ProcessedLog { counts, known, odometry, poses, steps, megabytes } = done;
     let trajectory = known.trajectory(&poses, &odometry);
-    folder.write("trajectory.txt", trajectory_lines(&trajectory).as_bytes())?;
+    folder.write_pieces("trajectory.txt", |file| write_trajectory_lines(file, trajectory))?;
     let is_interrupted = stop::stopped().is_some();
-    let mount_hint = if depth.is_some() { None } else { mount_hint(log, &counts) };
+    let mount_hint = if input.depth.is_some() { None } else { mount_hint(input.log.mount, steps, &counts) };
     let run = LaserMapRun { counts, megabytes, seconds, is_interrupted, mount_hint, failure };
     folder.write("summary.json", summary(request, input, &run).to_json().as_bytes())?;
     Ok(run)
 }
 
+fn failure(input: &LogInput, done: &ProcessedLog, grid: Option<&OccupancyGrid>) -> Option<String> {
+    LaserMapRun::failure_of(&input.log, &done.counts, grid, stop::stopped().is_some())
+}
+
 /// Whether the user has asked to stop before the scan `done`.
-fn is_stopped(done: usize, log: &LaserLog) -> bool {
-    stop::is_requested(|| format!("{done} of {} scans", log.scans.len()))
+fn is_stopped(done: usize, input: &LogInput) -> bool {
+    stop::is_requested(|| format!("{done} of {} scans", input.scan_count()))
 }
 
 /// Number of scans without overlap after which a log of implausibly long ranges is not mapped any further: each of its scans takes a
@@ -69,56 +85,70 @@ const MAX_SCANS_OF_WRONG_UNIT: usize = 10;
 
 /// Maps the scans of the log.
 fn map(
-    log: &LaserLog,
+    input: &mut LogInput,
     mapper: &mut ParticleMapper,
     progress: &dyn StepProgress,
-) -> (ScanCounts, KnownStretches) {
-    let (mut counts, mut known) = (ScanCounts::default(), KnownStretches::default());
-    let is_unit_wrong = range_unit_hint(log).is_some();
-    progress.begin(Some(log.scans.len()));
-    for (done, entry) in log.scans.iter().enumerate() {
-        if is_stopped(done, log) || (is_unit_wrong && counts.without_overlap >= MAX_SCANS_OF_WRONG_UNIT) {
-            break;
-        }
+) -> Result<ProcessedLog, AppError> {
+    let (mut done, mut is_unit_wrong) = (ProcessedLog::default(), None);
+    for_each_scan(input, progress, &mut done, |input, done, entry| {
         let update = mapper.update(entry.odom_from_base, &entry.scan);
-        counts.count(&update);
+        done.counts.count(&update);
         match update {
-            ScanUpdate::Paused(pause) => known.lose(pause.since),
-            ScanUpdate::Found(_) => known.find(entry.scan.stamp()),
+            ScanUpdate::Paused(pause) => done.known.lose(pause.since),
+            ScanUpdate::Found(_) => done.known.find(entry.scan.stamp()),
             _ => {}
         }
-        progress.advance();
-    }
+        done.counts.without_overlap < MAX_SCANS_OF_WRONG_UNIT
+            || !*is_unit_wrong.get_or_insert_with(|| range_unit_hint(&input.log).is_some())
+    })?;
     mapper.finish();
     progress.end();
-    (counts, known)
+    done.poses = mapper.whole_trajectory();
+    done.megabytes = mapper.bytes() as f64 / 1e6;
+    Ok(done)
 }
 
 /// The trajectory of the log in a map that does not change.
 fn localize(
-    log: &LaserLog,
+    input: &mut LogInput,
     localizer: &mut MapLocalizer,
     progress: &dyn StepProgress,
-) -> (ScanCounts, KnownStretches, Vec<(Stamp, Pose2)>) {
-    let (mut counts, mut known, mut poses) = (ScanCounts::default(), KnownStretches::default(), Vec::new());
-    progress.begin(Some(log.scans.len()));
-    for (done, entry) in log.scans.iter().enumerate() {
-        if is_stopped(done, log) {
-            break;
-        }
+) -> Result<ProcessedLog, AppError> {
+    let mut done = ProcessedLog::default();
+    for_each_scan(input, progress, &mut done, |_, done, entry| {
         let localized = localizer.update(entry.odom_from_base, &entry.scan);
-        counts.count_localized(&localized);
+        done.counts.count_localized(&localized);
         let stamp = entry.scan.stamp();
         match localized {
             Localized::Known { map_from_base, .. } => {
-                known.find(stamp);
-                poses.push((stamp, map_from_base));
+                done.known.find(stamp);
+                done.poses.push((stamp, map_from_base));
             }
-            Localized::Lost(_) => known.lose(stamp),
+            Localized::Lost(_) => done.known.lose(stamp),
             Localized::Still | Localized::Refused(_) => {}
         }
+        true
+    })?;
+    progress.end();
+    Ok(done)
+}
+
+/// Passes each scan of the log to `process`, until that returns false or the user stops the run.
+fn for_each_scan(
+    input: &mut LogInput,
+    progress: &dyn StepProgress,
+    done: &mut ProcessedLog,
+    mut process: impl FnMut(&LogInput, &mut ProcessedLog, &LaserLogScan) -> bool,
+) -> Result<(), AppError> {
+    progress.begin(Some(input.scan_count()));
+    let mut goes_on = true;
+    while goes_on && !is_stopped(done.counts.read, input) {
+        let Some(entry) = input.next_scan()?.map(Arc::new) else { break };
+        done.odometry.push((entry.scan.stamp(), entry.odom_from_base));
+        done.steps.take(&entry);
+        goes_on = process(input, done, &entry);
         progress.advance();
     }
-    progress.end();
-    (counts, known, poses)
+    done.counts.in_log = input.scan_count();
+    Ok(())
 }

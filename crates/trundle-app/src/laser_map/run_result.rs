@@ -45,7 +45,7 @@ impl LaserMapRun {
             return Some(nothing_processed(log, counts, is_stopped));
         }
         if let Some(failure) =
-            left_out(counts).or_else(|| of_one_time(log)).or_else(|| skipped(log, is_stopped))
+            left_out(counts).or_else(|| of_one_time(log)).or_else(|| skipped(log, counts, is_stopped))
         {
             return Some(failure);
         }
@@ -80,17 +80,15 @@ impl LaserMapRun {
 
 /// The failure of a log whose scans all have one timestamp, so that all have one pose.
 fn of_one_time(log: &LaserLog) -> Option<String> {
-    let stamp = log.scans.first()?.scan.stamp();
-    let is_one = log.scans.len() > 1 && log.scans.iter().all(|scan| scan.scan.stamp() == stamp);
-    let count = log.scans.len();
-    is_one.then(|| {
-        format!("all {count} scans have the timestamp {stamp} s, expected one timestamp a scan: are the headers filled in?")
-    })
+    let (stamp, count) = (log.statistics.only_stamp()?, log.statistics.scans);
+    Some(format!(
+        "all {count} scans have the timestamp {stamp} s, expected one timestamp a scan: are the headers filled in?"
+    ))
 }
 
 /// The failure of a log of which hardly a scan could be used.
-fn skipped(log: &LaserLog, is_stopped: bool) -> Option<String> {
-    let (used, all) = (log.scans.len(), log.scans.len() + log.skipped.len());
+fn skipped(log: &LaserLog, counts: &ScanCounts, is_stopped: bool) -> Option<String> {
+    let (used, all) = (counts.in_log, counts.in_log + log.skipped.len());
     let first = log.skipped.first()?;
     let is_rest = !is_stopped && (used as f64) < MIN_SHARE_USED * all as f64;
     is_rest.then(|| format!("only {used} of {all} scans could be used; {}", first.problem))
@@ -114,7 +112,7 @@ fn pause_note(counts: &ScanCounts) -> String {
 
 /// Reason why no scan was inserted into the map or localized in it.
 fn nothing_processed(log: &LaserLog, counts: &ScanCounts, is_stopped: bool) -> String {
-    let all = log.scans.len();
+    let all = counts.in_log;
     if counts.lost > 0 {
         let cause = range_unit_hint(log).unwrap_or_else(|| {
             "is it the map of this place, with the laser mounted as in the log?".to_owned()

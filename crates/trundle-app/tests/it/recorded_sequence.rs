@@ -90,10 +90,10 @@ fn slam_tracks_the_images_of_a_recording_with_its_wheels_and_its_camera() {
 fn the_depth_images_of_a_recording_make_a_map() {
     let scratch = tempfile::tempdir().unwrap();
     let request = map_request(&recording(scratch.path()), false);
-    let input = read_log(&request, &()).unwrap();
+    let mut input = read_log(&request, &()).unwrap();
     assert!(input.depth.as_ref().is_some_and(|depth| depth.by_wheels) && input.log.scans.len() > 5);
     let folder = OutputFolder::create(&scratch.path().join("map")).unwrap();
-    let run = map_log(&request, false, &input, &folder, &()).unwrap();
+    let run = map_log(&request, false, &mut input, &folder, &()).unwrap();
     assert_eq!(run.failure, None);
 }
 

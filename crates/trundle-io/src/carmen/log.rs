@@ -1,18 +1,13 @@
-//! The reader of CARMEN logs: collected lines become scans with odometry.
+//! A whole CARMEN log in memory.
 
-use super::line::LaserLine;
-use super::lines::LogLines;
-use super::mount::{mount, scan_of};
-use super::ranges::{is_range, limit, no_return_from};
-use super::text::TextLines;
+use super::scans::CarmenScans;
 use crate::IoError;
-use crate::laser_log::{
-    LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, LaserMount, Motion, insert_in_order,
-};
+use crate::laser_log::{LaserLog, LaserLogOptions};
 use std::path::Path;
 
 /// A CARMEN log, plain or compressed with gzip: lines of a laser (`FLASER`, `ROBOTLASER1`, `RAWLASER1` to `RAWLASER4` and those of
-/// the rear), `ODOM` and three of `PARAM`; others are ignored.
+/// the rear), `ODOM` and three of `PARAM`; others are ignored. [`crate::LaserLogScans`] reads the scans of a long log one at a
+/// time.
 ///
 /// The scans are those of the front laser, else the lines that are most; [`LaserLogOptions::scan_topic`] names others. A `RAWLASER` line
 /// has no pose: its odometry is interpolated between `ODOM` lines. Lines up to 0.05 s out of order are sorted. A broken line, or one whose
@@ -21,107 +16,28 @@ use std::path::Path;
 /// # Errors
 /// When the file cannot be read, an option is out of range, or no line holds a scan: then the first problem is named.
 pub fn read_carmen(path: &Path, options: &LaserLogOptions) -> Result<LaserLog, IoError> {
-    options.validate().map_err(IoError::field(path))?;
-    parse_carmen(path, TextLines::open(path)?, options)
+    CarmenScans::open(path, options).and_then(whole)
 }
 
-fn parse_carmen(path: &Path, text: TextLines, options: &LaserLogOptions) -> Result<LaserLog, IoError> {
-    let lines = LogLines::read(text)?;
-    let asked = options.scan_topic.as_deref();
-    let name = lines.chosen(asked).map_err(|problem| IoError::malformed(path, problem))?;
-    let mut log = LaserLog { sources: lines.sources(&name), ..LaserLog::default() };
-    log.skipped = lines.problems(&name);
-    let chosen = in_order(lines.of(&name), &mut log.skipped);
-    log.take(path, &chosen, &lines, options)?;
-    log.odometry = lines.odometry;
-    log.skipped.sort_by_key(|skip| skip.line);
-    match log.skipped.first() {
-        Some(skip) if log.scans.is_empty() => Err(IoError::line(path, skip.line, skip.problem.clone())),
-        _ => Ok(log),
+fn whole((mut log, mut scans): (LaserLog, CarmenScans)) -> Result<LaserLog, IoError> {
+    while let Some(scan) = scans.next_scan(&mut log)? {
+        log.scans.push(scan);
     }
-}
-
-/// The lines by rising stamps, without those whose times go back.
-fn in_order<'a>(
-    lines: impl Iterator<Item = (usize, &'a LaserLine)>,
-    skipped: &mut Vec<LaserLogSkip>,
-) -> Vec<(usize, &'a LaserLine)> {
-    let mut taken: Vec<(usize, &LaserLine)> = Vec::new();
-    for (line, laser) in lines {
-        if let Err(problem) = insert_in_order(&mut taken, (line, laser), |(_, laser)| laser.stamp) {
-            skipped.push(LaserLogSkip { line, problem });
-        }
-    }
-    taken
-}
-
-impl LaserLog {
-    /// Takes the lines' scans, each with its odometry.
-    fn take(
-        &mut self,
-        path: &Path,
-        lasers: &[(usize, &LaserLine)],
-        lines: &LogLines,
-        options: &LaserLogOptions,
-    ) -> Result<(), IoError> {
-        let found = limit(lasers);
-        self.max_range = options.max_range.or(found);
-        let beyond = options.max_range.or(found.map(no_return_from));
-        let mount = mount(&self.sources.scans, lasers, lines, options);
-        self.mount = LaserMount { turn: mount.theta, upside_down: options.upside_down };
-        let mut motion = Motion::default();
-        for (stamp, pose) in &lines.odometry {
-            // Lines that go back in time are named already.
-            let _ = motion.push(*stamp, *pose);
-        }
-        for (number, laser) in lasers {
-            self.note_bad_ranges(*number, laser);
-            let odometry = match laser.poses {
-                Some([_, odom_from_base]) => Ok(odom_from_base),
-                None => motion.at(laser.stamp),
-            };
-            let limit = beyond.or(laser.max_range).unwrap_or(f64::INFINITY);
-            let scan = odometry
-                .and_then(|pose| Ok((pose, scan_of(laser, mount, lines, limit, options.upside_down)?)));
-            match scan {
-                Ok((odom_from_base, scan)) => self.scans.push(LaserLogScan { odom_from_base, scan }),
-                Err(problem) => self.skipped.push(LaserLogSkip { line: *number, problem }),
-            }
-        }
-        self.refuse_other_clock(path, lasers, &motion)
-    }
-
-    /// Refuses a log none of whose scans has odometry of its time.
-    fn refuse_other_clock(
-        &self,
-        path: &Path,
-        lasers: &[(usize, &LaserLine)],
-        motion: &Motion,
-    ) -> Result<(), IoError> {
-        let times = lasers.first().zip(lasers.last()).map(|((_, a), (_, b))| (a.stamp, b.stamp));
-        match times.and_then(|times| motion.other_clock(times)) {
-            Some(problem) if self.scans.is_empty() => Err(IoError::malformed(path, problem)),
-            _ => Ok(()),
-        }
-    }
-
-    fn note_bad_ranges(&mut self, number: usize, laser: &LaserLine) {
-        let bad = laser.ranges.iter().filter(|range| !is_range(**range)).count();
-        self.bad_ranges += bad;
-        self.first_bad_range = self.first_bad_range.or((bad > 0).then_some(number));
-    }
+    Ok(log)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::carmen::text::TextLines;
+    use crate::laser_log::LaserLogScan;
     use proptest::prelude::*;
     use trundle_core::{Beam, Pose2, Stamp};
 
     fn read(text: &str, options: LaserLogOptions) -> Result<LaserLog, String> {
         let path = Path::new("a.log");
-        let lines = TextLines::new(path, std::io::Cursor::new(text.to_owned().into_bytes()));
-        lines.and_then(|lines| parse_carmen(path, lines, &options)).map_err(|error| error.to_string())
+        let text = || TextLines::new(path, std::io::Cursor::new(text.to_owned().into_bytes()));
+        CarmenScans::new(path, text, &options).and_then(whole).map_err(|error| error.to_string())
     }
 
     const GOOD: &str = "FLASER 4 1 2 3 4 0.5 0 0 0.2 0 0 10.5 host 0.1\n";

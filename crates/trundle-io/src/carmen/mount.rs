@@ -1,20 +1,20 @@
 //! The scan of a CARMEN line in the base frame: mount, angles, direction.
 
 use super::line::LaserLine;
-use super::lines::LogLines;
+use super::parameters::Parameters;
 use super::ranges::is_range;
 use crate::laser_log::{LaserLogOptions, check_sweep};
 use std::f64::consts::PI;
 use trundle_core::{Beam, Pose2, Scan};
 
-/// Mount of the laser of the lines `name`: by the options, else the poses of the lines, else the name.
+/// Mount of the laser of the lines `name`: by the options, else `by_poses` of the lines, else the name.
 pub(super) fn mount(
     name: &str,
-    lasers: &[(usize, &LaserLine)],
-    lines: &LogLines,
+    by_poses: Option<Pose2>,
+    parameters: &Parameters,
     options: &LaserLogOptions,
 ) -> Pose2 {
-    let known = mount_by_poses(lasers).unwrap_or_else(|| mount_by_name(name, lines.offset));
+    let known = by_poses.unwrap_or_else(|| mount_by_name(name, parameters.offset));
     let (x, theta) = (options.laser_x.unwrap_or(known.x), options.laser_turn.unwrap_or(known.theta));
     Pose2::new(x, known.y, theta)
 }
@@ -29,22 +29,6 @@ fn mount_by_name(name: &str, front_offset: f64) -> Pose2 {
     }
 }
 
-/// Mount of the laser by the poses of the lines, when all agree and it is at most 2 m from the base.
-fn mount_by_poses(lasers: &[(usize, &LaserLine)]) -> Option<Pose2> {
-    let place = |laser: &LaserLine| {
-        laser.poses.map(|[odom_from_laser, odom_from_base]| odom_from_base.inverse() * odom_from_laser)
-    };
-    let first = place(lasers.first()?.1)?;
-    let agree = |laser: &LaserLine| {
-        place(laser).is_some_and(|place| {
-            let off = first.inverse() * place;
-            off.position().norm() < 0.01 && off.theta.abs() < 0.01
-        })
-    };
-    let away = first.position().norm() > 1e-6 || first.theta.abs() > 1e-6;
-    (away && first.position().norm() < 2.0 && lasers.iter().all(|(_, laser)| agree(laser))).then_some(first)
-}
-
 /// The scan of a line, beams from right to left; a range of at least `limit` m, or an invalid one, has no return.
 ///
 /// # Errors
@@ -52,11 +36,11 @@ fn mount_by_poses(lasers: &[(usize, &LaserLine)]) -> Option<Pose2> {
 pub(super) fn scan_of(
     laser: &LaserLine,
     mount: Pose2,
-    lines: &LogLines,
+    parameters: &Parameters,
     limit: f64,
     upside_down: bool,
 ) -> Result<Scan, String> {
-    let [first, step] = angles(laser, lines)?;
+    let [first, step] = angles(laser, parameters)?;
     let beam = |&range: &f64| match is_range(range) && range < limit {
         true => Beam::Hit { range },
         false => Beam::Unseen,
@@ -74,13 +58,13 @@ pub(super) fn scan_of(
 }
 
 /// The angle of the first beam and the step: the line's own, else by the log's parameters, else 180 degrees.
-fn angles(laser: &LaserLine, lines: &LogLines) -> Result<[f64; 2], String> {
+fn angles(laser: &LaserLine, parameters: &Parameters) -> Result<[f64; 2], String> {
     if let Some(angles) = laser.angles {
         return Ok(angles);
     }
     let count = laser.ranges.len();
     let steps = (count - count % 2).max(1) as f64;
-    let field_of_view = match (lines.field_of_view, lines.resolution) {
+    let field_of_view = match (parameters.field_of_view, parameters.resolution) {
         (Some(field_of_view), _) => field_of_view,
         (None, Some(resolution)) => resolution * steps,
         (None, None) => PI,

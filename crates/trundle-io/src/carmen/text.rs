@@ -2,6 +2,7 @@
 
 use crate::IoError;
 use flate2::bufread::MultiGzDecoder;
+use std::fmt;
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -21,6 +22,13 @@ pub(super) struct TextLines {
     is_compressed: bool,
     number: usize,
     buffer: Vec<u8>,
+}
+
+impl fmt::Debug for TextLines {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { path, number, .. } = self;
+        f.debug_struct("TextLines").field("path", path).field("number", number).finish_non_exhaustive()
+    }
 }
 
 impl TextLines {

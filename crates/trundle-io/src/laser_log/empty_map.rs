@@ -1,7 +1,6 @@
 //! The likely cause of an empty map: the log's ranges, its odometry, or their units.
 
 use super::LaserLog;
-use trundle_core::Beam;
 
 /// Median of the ranges of a log \[m\]. A larger median means another unit. Source: ours; the medians of the shared logs are below 10 m,
 /// and no indoor laser reaches far beyond 80 m (SICK LMS200).
@@ -14,7 +13,7 @@ const MAX_MEDIAN_STEP_M: f64 = 3.0;
 /// Problem of the unit of a log's ranges; `None` if the ranges are plausible.
 #[must_use]
 pub fn range_unit_hint(log: &LaserLog) -> Option<String> {
-    let median = median(hit_ranges(log))?;
+    let median = log.statistics.median_range()?;
     let unit = if median > MAX_CENTIMETRE_MEDIAN { "millimetres" } else { "centimetres or millimetres" };
     (median > MAX_MEDIAN_RANGE_M).then(|| {
         format!(
@@ -26,18 +25,18 @@ pub fn range_unit_hint(log: &LaserLog) -> Option<String> {
 /// The likely cause of an empty map of a log, by its ranges.
 #[must_use]
 pub fn empty_map_cause(log: &LaserLog) -> String {
-    if log.scans_without_return() == log.scans.len() {
+    if log.statistics.is_blind() {
         return no_return_cause(log);
     }
     range_unit_hint(log).unwrap_or_else(|| {
-        format!("{} of {} scans hit no obstacle", log.scans_without_return(), log.scans.len())
+        format!("{} of {} scans hit no obstacle", log.scans_without_return(), log.statistics.scans)
     })
 }
 
 /// The likely cause if the scans of a log do not overlap with their map, by ranges and odometry.
 #[must_use]
 pub fn no_overlap_cause(log: &LaserLog) -> String {
-    if log.scans_without_return() == log.scans.len() && !log.scans.is_empty() {
+    if log.statistics.is_blind() && log.statistics.scans > 0 {
         return no_return_cause(log);
     }
     range_unit_hint(log).or_else(|| odometry_unit_hint(log)).unwrap_or_else(|| {
@@ -48,8 +47,7 @@ pub fn no_overlap_cause(log: &LaserLog) -> String {
 
 /// Problem of the unit of a log's odometry; `None` if the steps are plausible.
 fn odometry_unit_hint(log: &LaserLog) -> Option<String> {
-    let steps = log.scans.windows(2).map(|pair| pair[0].odom_from_base.distance(&pair[1].odom_from_base));
-    let median = median(steps.collect())?;
+    let median = log.statistics.median_step()?;
     (median > MAX_MEDIAN_STEP_M).then(|| {
         format!(
             "between two scans the odometry moves {median:.0} m or more at half of the steps, expected {MAX_MEDIAN_STEP_M} m or less: \
@@ -79,22 +77,11 @@ pub fn no_return_cause(log: &LaserLog) -> String {
     }
 }
 
-fn hit_ranges(log: &LaserLog) -> Vec<f64> {
-    let beams = log.scans.iter().flat_map(|scan| scan.scan.beams());
-    beams.filter_map(|beam| if let Beam::Hit { range } = beam { Some(*range) } else { None }).collect()
-}
-
-/// The upper median; `None` without values.
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::laser_log::LaserLogScan;
-    use trundle_core::{Pose2, Scan, Stamp, Vector2};
+    use trundle_core::{Beam, Pose2, Scan, Stamp, Vector2};
 
     /// Scans whose beams all have this range, m, `step` m apart by odometry.
     fn log(range: f64, step: f64) -> LaserLog {
@@ -109,7 +96,7 @@ mod tests {
             )
             .unwrap(),
         };
-        LaserLog { scans: (0..6).map(scan).collect(), ..LaserLog::default() }
+        LaserLog::of_scans((0..6).map(scan))
     }
 
     #[test]
@@ -126,11 +113,11 @@ mod tests {
 
     #[test]
     fn ranges_beyond_the_largest_one_may_be_in_another_unit() {
-        let mut log = log(4.0, 0.1);
-        let blind =
-            |i: i64| Scan::new(Stamp::from_nanos(i), Vector2::zeros(), 0.0, 0.1, vec![Beam::Unseen; 5]);
-        log.scans.iter_mut().zip(0..).for_each(|(entry, i)| entry.scan = blind(i).unwrap());
-        log.max_range = Some(8.0);
+        let blind = |i: i64| LaserLogScan {
+            odom_from_base: Pose2::IDENTITY,
+            scan: Scan::new(Stamp::from_nanos(i), Vector2::zeros(), 0.0, 0.1, vec![Beam::Unseen; 5]).unwrap(),
+        };
+        let log = LaserLog { max_range: Some(8.0), ..LaserLog::of_scans((0..6).map(blind)) };
         let cause = empty_map_cause(&log);
         assert!(cause.contains("largest range of 8 m") && cause.ends_with("millimetres?"), "{cause}");
     }

@@ -52,22 +52,30 @@ impl Motion {
         })
     }
 
-    /// The pose at a time, interpolated between the poses before and after it.
+    /// The pose at a time.
     ///
     /// # Errors
-    /// When no pose is near in time.
+    /// As [`pose_at`].
     pub(crate) fn at(&self, stamp: Stamp) -> Result<Pose2, String> {
-        let after = self.poses.partition_point(|(at, _)| *at < stamp);
-        let (before, next) = (after.checked_sub(1).and_then(|i| self.poses.get(i)), self.poses.get(after));
-        let near = |pose: &&(Stamp, Pose2)| (pose.0 - stamp).abs() <= POSE_HOLD_S;
-        match (before, next) {
-            (Some((t0, a)), Some((t1, b))) if *t1 - *t0 <= LONGEST_GAP => {
-                Ok(a.interpolate(b, (stamp - *t0) / (*t1 - *t0)))
-            }
-            (before, next) => {
-                let held = next.filter(near).or(before.filter(near));
-                held.map(|(_, pose)| *pose).ok_or_else(|| format!("no odometry about {stamp} s"))
-            }
+        pose_at(&self.poses, stamp)
+    }
+}
+
+/// The pose at a time, interpolated between those of `poses` (by rising stamps) before and after it.
+///
+/// # Errors
+/// When no pose is near in time.
+pub(crate) fn pose_at(poses: &[(Stamp, Pose2)], stamp: Stamp) -> Result<Pose2, String> {
+    let after = poses.partition_point(|(at, _)| *at < stamp);
+    let (before, next) = (after.checked_sub(1).and_then(|i| poses.get(i)), poses.get(after));
+    let near = |pose: &&(Stamp, Pose2)| (pose.0 - stamp).abs() <= POSE_HOLD_S;
+    match (before, next) {
+        (Some((t0, a)), Some((t1, b))) if *t1 - *t0 <= LONGEST_GAP => {
+            Ok(a.interpolate(b, (stamp - *t0) / (*t1 - *t0)))
+        }
+        (before, next) => {
+            let held = next.filter(near).or(before.filter(near));
+            held.map(|(_, pose)| *pose).ok_or_else(|| format!("no odometry about {stamp} s"))
         }
     }
 }

@@ -5,6 +5,7 @@ use super::cdr::Wire;
 use super::frames::{Frames, NoTransform};
 use super::hidden_topics::is_hidden;
 use super::messages::{LaserScan, MessagePose, Odometry, Transform, types};
+use super::scan_survey::ScanSurvey;
 use crate::IoError;
 use crate::laser_log::{LaserLogOptions, LaserLogSkip, Motion, chosen, is_named};
 use crate::recording::RawMessage;
@@ -16,10 +17,10 @@ use trundle_core::{Pose3, Stamp};
 /// Maximum number of topics named in a message; further topics are counted. Source: ours.
 const MAX_TOPICS_NAMED: usize = 20;
 
-/// All usable messages of a bag, by topic, with their indices in the bag.
+/// All usable messages of a bag, by topic, with their indices in the bag. Scans are surveyed only.
 #[derive(Default)]
 pub(in crate::ros) struct Contents {
-    scans: BTreeMap<String, Vec<(usize, LaserScan)>>,
+    scans: BTreeMap<String, ScanSurvey>,
     odometry: BTreeMap<String, Vec<(usize, Odometry)>>,
     moving: Vec<(usize, String, Transform)>,
     fixed: Frames,
@@ -90,7 +91,7 @@ impl Contents {
         match types::canonical(schema) {
             types::LASER_SCAN => {
                 let scan = LaserScan::read(data, wire).map_err(|error| error.to_string())?;
-                self.scans.entry(topic.clone()).or_default().push((number, scan));
+                self.scans.entry(topic.clone()).or_default().take(scan);
             }
             types::ODOMETRY => {
                 let odometry = Odometry::read(data, wire).map_err(|error| error.to_string())?;
@@ -115,12 +116,9 @@ impl Contents {
         }
     }
 
-    /// The scans of the requested topic, or of the one with the most scans; and the topic.
-    pub(in crate::ros) fn scans(
-        &mut self,
-        asked: Option<&str>,
-    ) -> Result<(String, Vec<(usize, LaserScan)>), String> {
-        let topic = chosen(&counts(&self.scans), asked, types::LASER_SCAN);
+    /// The requested topic of scans, or the one with the most scans; and what its scans show.
+    pub(in crate::ros) fn scan_topic(&mut self, asked: Option<&str>) -> Result<(String, ScanSurvey), String> {
+        let topic = chosen(&self.scan_counts(), asked, types::LASER_SCAN);
         let topic = topic.map_err(|problem| match self.skipped.first() {
             Some(skip) if self.scans.is_empty() => format!("no scan can be used: {}", skip.problem),
             _ if self.scans.is_empty() => {
@@ -128,8 +126,13 @@ impl Contents {
             }
             _ => problem,
         })?;
-        let scans = self.scans.remove(&topic).unwrap_or_default();
-        Ok((topic, scans))
+        let survey = self.scans.remove(&topic).unwrap_or_default();
+        Ok((topic, survey))
+    }
+
+    /// The topics of scans that are still here, with the number of their messages.
+    fn scan_counts(&self) -> BTreeMap<String, usize> {
+        self.scans.iter().map(|(topic, survey)| (topic.clone(), survey.count)).collect()
     }
 
     /// All scans by topic, those with the largest number first; only those of the requested topic if there is one.
@@ -265,7 +268,7 @@ impl Contents {
 
     /// The topics of scans and odometry that are still here, with the number of their messages.
     pub(in crate::ros) fn topics_left(&self) -> Vec<(String, usize)> {
-        counts(&self.scans).into_iter().chain(counts(&self.odometry)).collect()
+        self.scan_counts().into_iter().chain(counts(&self.odometry)).collect()
     }
 
     pub(in crate::ros) fn skip(&mut self, number: usize, topic: &str, problem: &str) {

@@ -1,19 +1,63 @@
-//! Conversion of a ROS bag into a laser log.
+//! Laser logs of any format: CARMEN logs and ROS bags.
 
-use super::contents::{BagMotion, Contents};
-use super::frames::NoTransform;
-use super::laser_scan::NoEcho;
-use super::messages::LaserScan;
-use crate::carmen::read_carmen;
-use crate::laser_log::{
-    LaserLog, LaserLogOptions, LaserLogScan, LaserLogSources, LaserMount, Motion, insert_in_order,
-    require_order,
-};
+use super::bag_scans::BagScans;
+use crate::carmen::{CarmenScans, read_carmen};
+use crate::laser_log::{LaserLog, LaserLogOptions, LaserLogScan};
 use crate::{Expected, IoError};
 use std::path::Path;
-use trundle_core::{Pose3, Vector3};
 
-/// The scans and odometry of a CARMEN log, an MCAP file, a ROS 2 bag (its folder or a file of it) or a ROS 1 bag.
+/// The scans of a laser log, read one at a time. The file is read twice; the memory does not grow with the number of scans.
+#[derive(Debug)]
+pub struct LaserLogScans {
+    format: Format,
+}
+
+#[derive(Debug)]
+enum Format {
+    Carmen(Box<CarmenScans>),
+    Bag(Box<BagScans>),
+}
+
+impl LaserLogScans {
+    /// Opens a log. Returns the log without its scans, and the reader of the scans. The log's odometry is empty if the log has no times of
+    /// beams: then no scan needs poses beside its own.
+    ///
+    /// # Errors
+    /// As [`read_laser_log`].
+    pub fn open(path: &Path, options: &LaserLogOptions) -> Result<(LaserLog, Self), IoError> {
+        if Expected::LaserLog.check(path)?.is_bag() {
+            let (log, scans) = BagScans::open(path, options)?;
+            return Ok((log, Self { format: Format::Bag(Box::new(scans)) }));
+        }
+        let (log, scans) = CarmenScans::open(path, options)?;
+        let log = LaserLog { odometry: Vec::new(), ..log };
+        Ok((log, Self { format: Format::Carmen(Box::new(scans)) }))
+    }
+
+    /// The next scan, by rising stamps; `None` after the last one. Counts the scan, or what is skipped, in `log`, which
+    /// [`LaserLogScans::open`] returned.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn next_scan(&mut self, log: &mut LaserLog) -> Result<Option<LaserLogScan>, IoError> {
+        match &mut self.format {
+            Format::Carmen(scans) => scans.next_scan(log),
+            Format::Bag(scans) => Ok(scans.next_scan(log)),
+        }
+    }
+
+    /// Number of scans that are not read yet; some of them may turn out to be unusable.
+    #[must_use]
+    pub fn left(&self) -> usize {
+        match &self.format {
+            Format::Carmen(scans) => scans.left(),
+            Format::Bag(scans) => scans.left(),
+        }
+    }
+}
+
+/// The scans and odometry of a CARMEN log, an MCAP file, a ROS 2 bag (its folder or a file of it) or a ROS 1 bag. [`LaserLogScans`] reads
+/// the scans of a long log one at a time.
 ///
 /// # Errors
 /// As [`read_carmen`] and [`read_ros_bag`].
@@ -35,90 +79,9 @@ pub fn read_laser_log(path: &Path, options: &LaserLogOptions) -> Result<LaserLog
 /// When the bag cannot be read or is truncated before its first scan, there is no scan or no odometry, no transform gives the mount of the
 /// laser, or no scan can be used: then the first problem is named.
 pub fn read_ros_bag(path: &Path, options: &LaserLogOptions) -> Result<LaserLog, IoError> {
-    options.validate().map_err(IoError::field(path))?;
-    let mut contents = Contents::read(path)?;
-    let wrong = |problem: String| IoError::malformed(path, problem);
-    let (topic, scans) = contents.scans(options.scan_topic.as_deref()).map_err(wrong)?;
-    let motion = contents.motion(options.odometry_topic.as_deref()).map_err(wrong)?;
-    let mut log = LaserLog::default();
-    for (number, message) in &scans {
-        let mount = mount(&contents, &topic, &motion.base, message, options).map_err(wrong)?;
-        log.mount = turned(&mount);
-        let taken = take(&mut log, message, &mount, &motion.motion, options.max_range);
-        if log.bad_ranges > 0 {
-            log.first_bad_range.get_or_insert(*number);
-        }
-        if let Err(problem) = taken {
-            contents.skip(*number, &topic, &problem);
-        }
+    let (mut log, mut scans) = BagScans::open(path, options)?;
+    while let Some(scan) = scans.next_scan(&mut log) {
+        log.scans.push(scan);
     }
-    finish(log, contents, &topic, &scans, motion).map_err(wrong)
-}
-
-/// The pose of the laser of a message, `base_from_laser`.
-fn mount(
-    contents: &Contents,
-    topic: &str,
-    base: &str,
-    message: &LaserScan,
-    options: &LaserLogOptions,
-) -> Result<Pose3, String> {
-    const WAY_OUT: &str = "say where the laser sits with --laser-x and --laser-turn";
-    let frame = &message.frame;
-    contents.base_from_laser(base, frame, options).map_err(|missing| match missing {
-        NoTransform::Broken(problem) => format!("{problem}, and {frame} is the frame of {topic}; {WAY_OUT}"),
-        NoTransform::Unconnected => format!(
-            "no transform leads from {base} to {frame}, the frame of {topic} (transforms: {}); {WAY_OUT}",
-            contents.transform_names()
-        ),
-    })
-}
-
-/// The rotation of a laser at this pose.
-fn turned(base_from_laser: &Pose3) -> LaserMount {
-    let ahead = base_from_laser.rotate(Vector3::x());
-    let up = base_from_laser.rotate(Vector3::z());
-    LaserMount { turn: ahead.y.atan2(ahead.x), upside_down: up.z < 0.0 }
-}
-
-/// Adds the data other than scans. A log without scans is refused.
-fn finish(
-    mut log: LaserLog,
-    mut contents: Contents,
-    topic: &str,
-    scans: &[(usize, LaserScan)],
-    motion: BagMotion,
-) -> Result<LaserLog, String> {
-    let times = scans.first().zip(scans.last()).map(|((_, a), (_, b))| (a.stamp, b.stamp));
-    let other_clock = times.and_then(|times| motion.motion.other_clock(times));
-    contents.skipped.sort_by_key(|skip| skip.line);
-    log.sources =
-        LaserLogSources { scans: topic.to_owned(), odometry: motion.topic, left: contents.topics_left() };
-    log.skipped = contents.skipped;
-    log.odometry = motion.motion.into_poses();
-    match (log.scans.first(), log.skipped.first()) {
-        (None, Some(first)) => {
-            Err(format!("no scan can be used: {}", other_clock.as_ref().unwrap_or(&first.problem)))
-        }
-        (None, None) => Err(format!("no scan on {topic}")),
-        _ => Ok(log),
-    }
-}
-
-/// Adds a scan to the log.
-fn take(
-    log: &mut LaserLog,
-    message: &LaserScan,
-    mount: &Pose3,
-    motion: &Motion,
-    max_range: Option<f64>,
-) -> Result<(), String> {
-    require_order(log.scans.last().map(|scan| scan.scan.stamp()), message.stamp)?;
-    let odom_from_base = motion.at(message.stamp)?;
-    let converted = message.sweep().on_base(mount, max_range, NoEcho::Unseen)?;
-    let scan = LaserLogScan { odom_from_base, scan: converted.scan };
-    insert_in_order(&mut log.scans, scan, |scan| scan.scan.stamp())?;
-    log.bad_ranges += converted.bad_ranges;
-    log.max_range = Some(max_range.unwrap_or(message.range_max));
-    Ok(())
+    Ok(log)
 }

@@ -4,14 +4,27 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use trundle_core::{Beam, Pose2};
-use trundle_io::{LaserLog, LaserLogOptions, LaserLogSkip, read_laser_log, read_ros_bag};
+use trundle_io::{LaserLog, LaserLogOptions, LaserLogScans, LaserLogSkip, read_laser_log, read_ros_bag};
 
 fn bag(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/ros2").join(name)
 }
 
 fn read(path: &Path) -> LaserLog {
-    read_laser_log(path, &LaserLogOptions::default()).unwrap()
+    let log = read_laser_log(path, &LaserLogOptions::default()).unwrap();
+    assert_eq!(one_at_a_time(path), log);
+    log
+}
+
+/// The log whose scans are read one at a time.
+fn one_at_a_time(path: &Path) -> LaserLog {
+    let (mut log, mut scans) = LaserLogScans::open(path, &LaserLogOptions::default()).unwrap();
+    while let Some(scan) = scans.next_scan(&mut log).unwrap() {
+        log.scans.push(scan);
+        assert!(log.scans.len() <= log.statistics.scans + scans.left());
+    }
+    assert_eq!((log.statistics.scans, scans.left()), (log.scans.len(), 0));
+    log
 }
 
 /// The bags of `data/ros2/make_bags.py`: a laser upside down, turned and to the side, in a room with walls at x = -2, 6, y = -2, 2.

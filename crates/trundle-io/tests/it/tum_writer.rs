@@ -124,6 +124,9 @@ fn a_laser_log_is_read_again() {
     fs::write(&path, log.into_text()).unwrap();
     let read = read_carmen(&path, &LaserLogOptions::default()).unwrap();
     assert_eq!((read.scans.len(), read.odometry.len(), read.skipped.len()), (40, 40, 0));
+    let (mut log, mut scans) = LaserLogScans::open(&path, &LaserLogOptions::default()).unwrap();
+    let one_at_a_time: Vec<_> = std::iter::from_fn(|| scans.next_scan(&mut log).unwrap()).collect();
+    assert_eq!((&one_at_a_time, &log.statistics), (&read.scans, &read.statistics));
     let LaserLogScan { odom_from_base, scan } = &read.scans[7];
     assert!(odom_from_base.distance(&pose(7)) < 1e-6 && (scan.origin().x - 0.125).abs() < 1e-6);
     assert!((scan.angle_min() + 0.5).abs() < 1e-6 && (scan.angle_increment() - 0.03125).abs() < 1e-6);
