@@ -7,6 +7,7 @@ mod known_stretches;
 mod log_input;
 mod mount_check;
 mod mount_steps;
+mod neighbours;
 mod numbers;
 mod request;
 mod run;

@@ -1,6 +1,7 @@
 //! Depth images as scans, with the base's poses beside them.
 
 use super::log_input::{DepthLog, LogInput};
+use super::neighbours::{MAX_POSE_GAP_S, neighbours};
 use crate::pose_coverage::why_uncovered;
 use crate::sequence_input::{PendingFrame, RecordedRun, SequenceInput};
 use crate::{AppError, StepProgress, read_trajectory, stop};
@@ -12,10 +13,6 @@ use trundle_runtime::{RobotConfig, base_below};
 
 /// Time between two scans \[s\]; images that come sooner make no scan. A little under 1 / 5 Hz. Source: ours.
 const MIN_SCAN_PERIOD_S: f64 = 0.19;
-/// Time between two poses that are interpolated \[s\]. Across a longer gap the pose is unknown. Source: ours.
-const MAX_POSE_GAP_S: f64 = 1.0;
-/// Time after the last pose for which that pose still counts \[s\]. Later the pose is unknown. Source: ours.
-const MAX_POSE_AGE_S: f64 = 0.1;
 /// Distance of a camera pose from the first \[m\]. Beyond it the file is refused. Source: ours.
 const MAX_POSE_DISTANCE_M: f64 = 1e6;
 
@@ -217,14 +214,4 @@ fn base_poses(file: &Path, robot: &RobotConfig) -> Result<Vec<(Stamp, Pose2)>, A
     let (first_from_frame, camera_from_base) = (first.inverse(), base_from_camera.inverse());
     let base = |pose: &Pose3| (base_from_camera * first_from_frame * *pose * camera_from_base).to_pose2();
     Ok(camera.iter().map(|(stamp, pose)| (*stamp, base(pose))).collect())
-}
-
-/// The poses before and after a time, and its share of the time between them.
-pub(super) fn neighbours<T: Copy>(poses: &[(Stamp, T)], stamp: Stamp) -> Option<(T, T, f64)> {
-    let after = poses.partition_point(|(at, _)| *at <= stamp);
-    let (t0, a) = *poses.get(after.checked_sub(1)?)?;
-    match poses.get(after) {
-        Some((t1, b)) if *t1 - t0 <= MAX_POSE_GAP_S => Some((a, *b, (stamp - t0) / (*t1 - t0))),
-        _ => (stamp - t0 < MAX_POSE_AGE_S).then_some((a, a, 0.0)),
-    }
 }

@@ -1,6 +1,6 @@
 //! A laser log and its scans, with the camera's data if the scans were made from depth images.
 
-use super::depth_scans::neighbours;
+use super::neighbours::neighbours;
 use crate::AppError;
 use std::vec::IntoIter;
 use trundle_core::{Pose2, Stamp, deskewed};

@@ -1,6 +1,5 @@
 //! Poses at the scans that were dropped, relative to scans before them.
 
-use crate::loop_closing::scan_history::keep;
 use trundle_core::{Pose2, Stamp};
 
 /// Numbers of all scans of a run in their order, and the poses at the dropped ones. A dropped scan takes 24 bytes. Cost of dropping a scan
@@ -78,4 +77,13 @@ impl DroppedScans {
     pub(crate) fn bytes(&self) -> usize {
         self.links.capacity() * size_of::<Link>() + self.stored.capacity() * size_of::<u32>()
     }
+}
+
+/// Drops the elements marked in `goes`.
+pub(crate) fn keep<T>(all: &mut Vec<T>, goes: &[bool]) {
+    let mut k = 0;
+    all.retain(|_| {
+        k += 1;
+        !goes[k - 1]
+    });
 }

@@ -1,6 +1,6 @@
 //! Stored scans, step covariances and closed loops of a run.
 
-use crate::loop_closing::dropped_scans::DroppedScans;
+use crate::loop_closing::dropped_scans::{DroppedScans, keep};
 use crate::loop_closing::stored_scan::StoredScan;
 use crate::pose_graph::Constraint;
 use nalgebra::Matrix3;
@@ -143,15 +143,6 @@ impl ScanHistory {
             + self.loops.capacity() * size_of::<Constraint>()
             + self.dropped.bytes()
     }
-}
-
-/// Drops the elements marked in `goes`.
-pub(crate) fn keep<T>(all: &mut Vec<T>, goes: &[bool]) {
-    let mut k = 0;
-    all.retain(|_| {
-        k += 1;
-        !goes[k - 1]
-    });
 }
 
 #[cfg(test)]
