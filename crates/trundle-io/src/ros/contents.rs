@@ -135,27 +135,6 @@ impl Contents {
         self.scans.iter().map(|(topic, survey)| (topic.clone(), survey.count)).collect()
     }
 
-    /// All scans by topic, those with the largest number first; only those of the requested topic if there is one.
-    ///
-    /// # Errors
-    /// When the requested topic does not exist.
-    pub(in crate::ros) fn take_scans(
-        &mut self,
-        asked: Option<&str>,
-    ) -> Result<Vec<(String, Vec<(usize, LaserScan)>)>, String> {
-        let asked = asked.map(|asked| chosen(&counts(&self.scans), Some(asked), types::LASER_SCAN));
-        let asked = asked.transpose()?;
-        let mut topics: Vec<_> = std::mem::take(&mut self.scans).into_iter().collect();
-        topics.retain(|(topic, _)| asked.as_ref().is_none_or(|asked| asked == topic));
-        topics.sort_by_key(|(_, messages)| std::cmp::Reverse(messages.len()));
-        Ok(topics)
-    }
-
-    /// Whether scans were read.
-    pub(in crate::ros) fn has_scans(&self) -> bool {
-        !self.scans.is_empty()
-    }
-
     /// Whether the bag has odometry, or transforms below `odom`.
     pub(in crate::ros) fn has_motion(&self) -> bool {
         !self.odometry.is_empty() || self.moving.iter().any(|(_, _, t)| t.parent.ends_with("odom"))

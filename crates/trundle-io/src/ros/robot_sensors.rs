@@ -6,4 +6,4 @@ mod scans;
 
 pub(in crate::ros) use gyro::{ImuTopics, choose_gyro};
 pub(in crate::ros) use mount::{BasePlace, bases};
-pub(in crate::ros) use scans::{RosScans, choose_scans};
+pub(in crate::ros) use scans::{RosScans, ScanMessages, choose_scans};

@@ -26,7 +26,7 @@ impl Sensors {
             return Ok(sensors);
         };
         let scans = match options.is_for_robot {
-            true => survey.contents.take_scans(options.scan_topic.as_deref())?,
+            true => survey.scans.take_out(options.scan_topic.as_deref())?,
             false => Vec::new(),
         };
         let place = BasePlace { contents: &survey.contents, base, times: (*first, *last) };
@@ -44,7 +44,7 @@ impl Sensors {
 /// Accepts missing images where a laser replaces them, with a warning if there are images that cannot be used.
 pub(super) fn without_images(survey: &mut Survey, problem: String, sensors: &Sensors) -> Result<(), String> {
     if sensors.scan_topic.is_empty() {
-        if survey.contents.has_scans() {
+        if !survey.scans.is_empty() {
             return Err(format!(
                 "{problem}; no odometry beside the scans of a laser, expected nav_msgs/Odometry or transforms from odom to the base"
             ));

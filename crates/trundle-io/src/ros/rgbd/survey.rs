@@ -8,7 +8,7 @@ use crate::ros::bag::Bag;
 use crate::ros::cdr::Wire;
 use crate::ros::contents::Contents;
 use crate::ros::messages::{Odometry, Transform, types};
-use crate::ros::robot_sensors::ImuTopics;
+use crate::ros::robot_sensors::{ImuTopics, ScanMessages};
 use crate::{IoError, Warnings};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -24,6 +24,7 @@ pub(super) struct Survey {
     pub(super) imus: ImuTopics,
     /// Whether the scans of lasers are kept.
     keeps_scans: bool,
+    pub(super) scans: ScanMessages,
     /// The first camera_info message of each topic.
     pub(super) infos: BTreeMap<String, CameraInfo>,
     /// True poses: the frame whose pose it is, and the pose.
@@ -88,6 +89,9 @@ impl Survey {
                 Ok(())
             }
             types::LASER_SCAN if !self.keeps_scans => Ok(()),
+            types::LASER_SCAN => {
+                self.scans.take(number, message, wire).map_err(|error| error.to_string())
+            }
             types::IMU => {
                 let taken = self.imus.take(number, &message.topic, &message.data, wire);
                 taken.map_err(|error| error.to_string())
@@ -109,7 +113,7 @@ impl Survey {
 
     /// Whether images or scans were read.
     fn has_sensors(&self) -> bool {
-        !self.images.is_empty() || self.contents.has_scans()
+        !self.images.is_empty() || !self.scans.is_empty()
     }
 
     fn take_image(&mut self, topic: &str, image: &BagImage) {

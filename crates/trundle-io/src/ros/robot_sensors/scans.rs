@@ -2,11 +2,52 @@
 
 use super::mount::BasePlace;
 use crate::Warnings;
-use crate::laser_log::insert_in_order;
+use crate::laser_log::{chosen, insert_in_order};
+use crate::recording::RawMessage;
+use crate::ros::cdr::{CdrError, Wire};
 use crate::ros::laser_scan::NoEcho;
-use crate::ros::messages::LaserScan;
+use crate::ros::messages::{LaserScan, types};
 use std::collections::BTreeMap;
 use trundle_core::{Pose3, Scan, Stamp};
+
+/// The scans of a bag's lasers by topic, with the numbers of their messages.
+#[derive(Default)]
+pub(in crate::ros) struct ScanMessages {
+    topics: BTreeMap<String, Vec<(usize, LaserScan)>>,
+}
+
+impl ScanMessages {
+    pub(in crate::ros) fn take(
+        &mut self,
+        number: usize,
+        message: &RawMessage,
+        wire: Wire,
+    ) -> Result<(), CdrError> {
+        let scan = LaserScan::read(&message.data, wire)?;
+        self.topics.entry(message.topic.clone()).or_default().push((number, scan));
+        Ok(())
+    }
+
+    pub(in crate::ros) fn is_empty(&self) -> bool {
+        self.topics.is_empty()
+    }
+
+    /// Takes the scans out, the topic with the largest number first; only those of the requested topic if there is one.
+    ///
+    /// # Errors
+    /// When the requested topic does not exist.
+    pub(in crate::ros) fn take_out(
+        &mut self,
+        asked: Option<&str>,
+    ) -> Result<Vec<(String, Vec<(usize, LaserScan)>)>, String> {
+        let counts = self.topics.iter().map(|(topic, scans)| (topic.clone(), scans.len())).collect();
+        let asked = asked.map(|asked| chosen(&counts, Some(asked), types::LASER_SCAN)).transpose()?;
+        let mut topics: Vec<_> = std::mem::take(&mut self.topics).into_iter().collect();
+        topics.retain(|(topic, _)| asked.as_ref().is_none_or(|asked| asked == topic));
+        topics.sort_by_key(|(_, scans)| std::cmp::Reverse(scans.len()));
+        Ok(topics)
+    }
+}
 
 /// The usable sweeps of a laser by rising stamps, as ranges of the messages.
 #[derive(Default)]
