@@ -13,7 +13,7 @@ pub struct RunLog {
     pub start: Option<Stamp>,
     /// Newest stamp of the run.
     pub now: Stamp,
-    /// `map_from_base` as estimated, at every image.
+    /// `map_from_base` as estimated, at every image; without images at every matched scan.
     pub estimates: Vec<PoseEstimate>,
     /// `map_from_base` in truth, at every truth event.
     pub truths: Vec<(Stamp, Pose2)>,
@@ -58,7 +58,7 @@ pub struct StateChange {
 }
 
 /// Images by the tracking state.
-#[derive(Debug, Default, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrackCounts {
     /// Well tracked.
     pub ok: usize,
@@ -123,6 +123,8 @@ impl RunLog {
         if let Some(track) = &report.track {
             self.tracked.count(track.tracking);
             self.estimates.extend(report.estimate);
+        } else if report.measurements.scan.is_some() && self.tracked == TrackCounts::default() {
+            self.estimates.extend(report.estimate);
         }
         self.twists.extend(report.twist.map(|twist| (now, twist)));
         if self.is_brief {
@@ -152,12 +154,12 @@ impl RunLog {
         self.truths.get(after.checked_sub(1)?).map(|(_, pose)| *pose)
     }
 
-    /// The estimated poses, at every image.
+    /// The estimated poses, at every image; without images at every matched scan.
     pub fn estimated_path(&self) -> Vec<(Stamp, Pose2)> {
         self.estimates.iter().map(|estimate| (estimate.stamp, estimate.pose)).collect()
     }
 
-    /// The estimate beside the truth, for every image with truth.
+    /// The estimate beside the truth, for every estimated pose with truth.
     pub fn pose_samples(&self) -> Vec<PoseSample> {
         let start = self.start.unwrap_or_default();
         let sample = |estimate: &PoseEstimate| {
