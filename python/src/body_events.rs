@@ -153,7 +153,12 @@ impl BodyCondition {
     /// The sectors of a charging station's light that the receivers at the left, middle and right of the front detect: "near_left",
     /// "near_center", "near_right", "far_left", "far_center", "far_right", as seen in the direction of the station's front.
     #[staticmethod]
-    fn dock_infrared(stamp: f64, left: Vec<String>, center: Vec<String>, right: Vec<String>) -> PyResult<Self> {
+    fn dock_infrared(
+        stamp: f64,
+        left: Vec<String>,
+        center: Vec<String>,
+        right: Vec<String>,
+    ) -> PyResult<Self> {
         let (left, center, right) = (beams(&left)?, beams(&center)?, beams(&right)?);
         Self::of(stamp, BodyEventKind::DockInfrared(DockInfrared { left, center, right }))
     }

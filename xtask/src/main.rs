@@ -154,8 +154,9 @@ fn main() -> ExitCode {
         XtaskCommand::Tidy { shrink, grow } if shrink || grow => tidy::shrink(&root, grow),
         XtaskCommand::Tidy { .. } => tidy::run(&root),
         XtaskCommand::Book => book::run(&root),
-        XtaskCommand::Commands => program::release_trundle(&root)
-            .and_then(|trundle| command_reference::run(&root, &trundle, false)),
+        XtaskCommand::Commands => {
+            program::release_trundle(&root).and_then(|trundle| command_reference::run(&root, &trundle, false))
+        }
         XtaskCommand::BookLinks { question } => book::repository_links::run(&question),
         XtaskCommand::Golden { update, only, profile } => {
             golden::run(&root, &golden::Options { update, only, profile })

@@ -75,10 +75,15 @@ mod with_tls {
             require_processor()?;
             let certificates = certificates(&read(chain)?).map_err(|problem| broken(chain, problem))?;
             let own = certificates.first().cloned();
-            let own = own.ok_or_else(|| broken(chain, "it has no certificate, expected a PEM file with BEGIN CERTIFICATE"))?;
-            EndEntityCert::try_from(&own).map_err(|problem| broken(chain, format!("not a certificate of a server: {problem}")))?;
+            let own = own.ok_or_else(|| {
+                broken(chain, "it has no certificate, expected a PEM file with BEGIN CERTIFICATE")
+            })?;
+            EndEntityCert::try_from(&own)
+                .map_err(|problem| broken(chain, format!("not a certificate of a server: {problem}")))?;
             let secret = PrivateKeyDer::from_pem_slice(&read(key)?);
-            let secret = secret.map_err(|_| broken(key, "it has no key, expected a PEM file with BEGIN PRIVATE KEY, not encrypted"))?;
+            let secret = secret.map_err(|_| {
+                broken(key, "it has no key, expected a PEM file with BEGIN PRIVATE KEY, not encrypted")
+            })?;
             let config = ServerConfig::builder_with_provider(Arc::new(rustls_graviola::default_provider()))
                 .with_safe_default_protocol_versions()
                 .map_err(|problem| LiveError::System(problem.to_string()))?
@@ -128,7 +133,8 @@ mod with_tls {
         ];
         #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
         let features = [("x86-64 or aarch64", false)];
-        let names: Vec<&str> = features.into_iter().filter_map(|(name, has)| (!has).then_some(name)).collect();
+        let names: Vec<&str> =
+            features.into_iter().filter_map(|(name, has)| (!has).then_some(name)).collect();
         if names.is_empty() {
             return Ok(());
         }
@@ -143,7 +149,10 @@ mod with_tls {
         let open = File::open(file).and_then(|open| open.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes));
         open.map_err(|problem| broken(file, problem.to_string()))?;
         if bytes.len() as u64 > MAX_FILE_BYTES {
-            return Err(broken(file, format!("it has more than {MAX_FILE_BYTES} bytes, expected a PEM file")));
+            return Err(broken(
+                file,
+                format!("it has more than {MAX_FILE_BYTES} bytes, expected a PEM file"),
+            ));
         }
         Ok(bytes)
     }
@@ -155,8 +164,13 @@ mod with_tls {
 
     fn refused_key(chain: &Path, key: &Path, problem: &Error) -> LiveError {
         match problem {
-            Error::InconsistentKeys(_) => broken(key, format!("it is not the key of the certificate {}", chain.display())),
-            _ => broken(key, format!("the key cannot be used: {problem}; expected RSA, ECDSA (P-256, P-384) or Ed25519")),
+            Error::InconsistentKeys(_) => {
+                broken(key, format!("it is not the key of the certificate {}", chain.display()))
+            }
+            _ => broken(
+                key,
+                format!("the key cannot be used: {problem}; expected RSA, ECDSA (P-256, P-384) or Ed25519"),
+            ),
         }
     }
 

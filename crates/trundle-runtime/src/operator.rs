@@ -5,8 +5,8 @@ use crate::mission::goal_options::PATIENCE_RANGE_S;
 use crate::{Mission, RobotConfig};
 use serde::{Deserialize, Serialize};
 use trundle_core::{
-    DriveLimits, GridGeometry, Invalid, MAX_TEXT_CELLS, MapAnnotations, OccupancyGrid, Pose2, SPEED_LIMIT_RANGE_M_S,
-    Twist2, require_finite, require_in,
+    DriveLimits, GridGeometry, Invalid, MAX_TEXT_CELLS, MapAnnotations, OccupancyGrid, Pose2,
+    SPEED_LIMIT_RANGE_M_S, Twist2, require_finite, require_in,
 };
 use trundle_mapping::GridMapper;
 
@@ -180,7 +180,8 @@ impl RunSetting {
     /// The setting with a key of the robot file, in the unit of the key; `None` if it cannot change while the robot runs.
     #[must_use]
     pub fn of_key(key: &str, value: f64) -> Option<Self> {
-        let all = [Self::Speed, Self::TurnRate, Self::Patience, Self::ArrivalBound, Self::ArrivalHeadingBound];
+        let all =
+            [Self::Speed, Self::TurnRate, Self::Patience, Self::ArrivalBound, Self::ArrivalHeadingBound];
         all.into_iter().map(|setting| setting(value)).find(|setting| setting.key() == key)
     }
 

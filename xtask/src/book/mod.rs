@@ -6,8 +6,8 @@ mod html_links;
 mod page_run;
 pub mod repository_links;
 
-use crate::{command_reference, program};
 use crate::workspace::Verdict;
+use crate::{command_reference, program};
 use std::path::Path;
 
 /// Checks the reference of commands, runs the tested commands of the pages, then builds the book and checks its links.

@@ -158,8 +158,7 @@ impl RunSteering {
         let setting = RunSetting::of_key(key, value);
         let setting =
             setting.ok_or_else(|| CommandRefusal::of(format!("{key} cannot change while the robot runs")))?;
-        let (text, (min, max)) =
-            (SettingText::of(setting, &self.limits), setting.range_within(&self.limits));
+        let (text, (min, max)) = (SettingText::of(setting, &self.limits), setting.range_within(&self.limits));
         require_in(key, value, text.unit, min, max)?;
         self.send(OperatorCommand::Change(setting))
     }

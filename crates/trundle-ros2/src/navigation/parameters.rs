@@ -49,7 +49,8 @@ impl Parameters {
             } else {
                 String::new()
             };
-            let range = RunSetting::of_key(setting.key, value.double_value).map(|own| own.range_within(&robot.limits));
+            let range = RunSetting::of_key(setting.key, value.double_value)
+                .map(|own| own.range_within(&robot.limits));
             let description = setting.doc.to_owned();
             Some((setting.key.to_owned(), Parameter { value, description, constraints, range }))
         };

@@ -89,9 +89,7 @@ impl Survey {
                 Ok(())
             }
             types::LASER_SCAN if !self.keeps_scans => Ok(()),
-            types::LASER_SCAN => {
-                self.scans.take(number, message, wire).map_err(|error| error.to_string())
-            }
+            types::LASER_SCAN => self.scans.take(number, message, wire).map_err(|error| error.to_string()),
             types::IMU => {
                 let taken = self.imus.take(number, &message.topic, &message.data, wire);
                 taken.map_err(|error| error.to_string())
