@@ -7,7 +7,7 @@ mod place;
 
 pub use bag_topics::BagTopicsArgs;
 pub use choice::choice;
-pub use number::NumberArg;
+pub use number::{NumberArg, NumberText};
 pub use place::PlaceArgs;
 
 use crate::output_args::leaf;
@@ -71,10 +71,10 @@ pub struct MeshArgs {
     #[arg(long, value_name = "AXIS", default_value = "y", hide_short_help = true, value_parser = choice(&UpAxis::CHOICES))]
     pub up: UpAxis,
     /// Metres per unit of a .glb or .gltf, as 0.01 for centimetres [default: 1]
-    #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = NumberArg(NumberText::above_zero("m")), allow_negative_numbers = true)]
     pub scale: Option<f64>,
     /// Height of the floor in a .glb or .gltf, m: it is moved to z = 0 [default: the lowest large level]
-    #[arg(long, value_name = "Z", hide_short_help = true, value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "Z", hide_short_help = true, value_parser = NumberArg(NumberText::any("m")), allow_negative_numbers = true)]
     pub floor: Option<f64>,
 }
 

@@ -5,7 +5,7 @@ mod shards;
 
 pub use args::ExperimentArgs;
 
-use self::args::{BarnArgs, Experiment, MrpbArgs, RealTimeArgs, RunsArgs};
+use self::args::{BarnArgs, Experiment, MrpbArgs, RealTimeArgs, RunsArgs, SeriesArgs};
 use crate::common_args::Common;
 use crate::outcome::Outcome;
 use crate::{console, logging};
@@ -14,11 +14,13 @@ use std::sync::Arc;
 use trundle::app::operator::OperatorLink;
 use trundle::app::{AppError, stop};
 use trundle::experiments::{
-    ExperimentContext, ExperimentDisplay, ExperimentReport, KeptRuns, RunOrigin, RunsRequest, barn, corridor,
-    docking_station, fault_scenarios, known_map, look_alikes, missions, mrpb, people, poses, real_time,
+    ExperimentContext, ExperimentDisplay, ExperimentReport, KeptRuns, RobotExperiment, RunOrigin,
+    RunsRequest, barn, corridor, docking_station, fault_scenarios, known_map, look_alikes, missions, mrpb,
+    people, poses, real_time,
 };
 use trundle::io::OutputFolder;
 use trundle::live::LivePage;
+use trundle::runtime::RobotConfig;
 
 /// Runs the requested experiment, or merges its shards.
 pub fn run(args: &ExperimentArgs) -> Result<Outcome, AppError> {
@@ -44,9 +46,17 @@ fn run_from(which: &Experiment, origin: &RunOrigin) -> Result<Outcome, AppError>
         Experiment::People(args) => runs(args, "people", origin, people::run),
         Experiment::LookAlikes(args) => runs(args, "look-alikes", origin, look_alikes::run),
         Experiment::DockingStation(args) => runs(args, "docking-station", origin, docking_station::run),
-        Experiment::Barn(args) => run_barn(args, origin),
-        Experiment::Mrpb(args) => run_mrpb(args, origin),
-        Experiment::KnownMap(args) => run_known_map(args, origin),
+        Experiment::Barn(BarnArgs { data, worlds, series, out }) => {
+            own_robot((series, out), origin, |robot| {
+                barn::BarnRequest::new(data.clone(), *worlds, series.seeds, robot)
+            })
+        }
+        Experiment::Mrpb(MrpbArgs { data, only, series, out }) => own_robot((series, out), origin, |robot| {
+            mrpb::MrpbRequest::new(data.clone(), only.clone(), series.seeds, robot)
+        }),
+        Experiment::KnownMap(RunsArgs { only, series, out }) => own_robot((series, out), origin, |robot| {
+            known_map::KnownMapRequest::new(series.seeds, only.clone(), robot)
+        }),
         Experiment::RealTime(args) => run_real_time(args, origin),
         Experiment::Corridor(a) => in_folder(&a.out, &a.common, None, origin, |_, _| corridor::run()),
         Experiment::Merge(_) => {
@@ -68,25 +78,15 @@ fn runs<R: ExperimentReport>(
     in_folder(&args.out, &args.series.common, page, origin, |_, context| experiment(&request, context))
 }
 
-fn run_barn(args: &BarnArgs, origin: &RunOrigin) -> Result<Outcome, AppError> {
-    let robot = origin.robot(|| args.series.robot.robot_if_given())?;
-    let request = barn::BarnRequest::new(args.data.clone(), args.worlds, args.series.seeds, robot);
-    let page = args.series.live.of_experiment("barn", &request.robot())?;
-    in_folder(&args.out, &args.series.common, page, origin, |_, context| barn::run(&request, context))
-}
-
-fn run_mrpb(args: &MrpbArgs, origin: &RunOrigin) -> Result<Outcome, AppError> {
-    let robot = origin.robot(|| args.series.robot.robot_if_given())?;
-    let request = mrpb::MrpbRequest::new(args.data.clone(), args.only.clone(), args.series.seeds, robot);
-    let page = args.series.live.of_experiment("mrpb", &request.robot())?;
-    in_folder(&args.out, &args.series.common, page, origin, |_, context| mrpb::run(&request, context))
-}
-
-fn run_known_map(args: &RunsArgs, origin: &RunOrigin) -> Result<Outcome, AppError> {
-    let robot = origin.robot(|| args.series.robot.robot_if_given())?;
-    let request = known_map::KnownMapRequest::new(args.series.seeds, args.only.clone(), robot);
-    let page = args.series.live.of_experiment("known-map", &request.robot())?;
-    in_folder(&args.out, &args.series.common, page, origin, |_, context| known_map::run(&request, context))
+/// An experiment with a robot of its own.
+fn own_robot<E: RobotExperiment>(
+    (series, out): (&SeriesArgs, &Path),
+    origin: &RunOrigin,
+    request: impl FnOnce(Option<RobotConfig>) -> E,
+) -> Result<Outcome, AppError> {
+    let request = request(origin.robot(|| series.robot.robot_if_given())?);
+    let page = series.live.of_experiment(E::NAME, &request.robot())?;
+    in_folder(out, &series.common, page, origin, |_, context| request.run(context))
 }
 
 fn run_real_time(args: &RealTimeArgs, origin: &RunOrigin) -> Result<Outcome, AppError> {

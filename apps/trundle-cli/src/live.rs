@@ -7,7 +7,7 @@ use trundle::app::operator::{FrontEnd, MapFolder, Operator, OperatorLink, operat
 use trundle::app::{AppError, Progress, RunSetup};
 #[cfg(feature = "foxglove")]
 use trundle::foxglove;
-use trundle::live::{Certificate, LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
+use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
 use trundle::runtime::RobotConfig;
 
 /// The page of a command, for a browser.
@@ -136,23 +136,12 @@ impl ViewArgs {
     ) -> Result<Option<LivePage>, AppError> {
         let Some(address) = self.live else { return Ok(None) };
         let tokens = self.live_tokens.as_deref().map_or_else(Tokens::random, Tokens::of_file)?;
-        let mut options = LiveOptions::new(address, tokens, is_steered, maps);
-        options.certificate = self.certificate()?;
+        let options = LiveOptions::new(address, tokens, is_steered, maps);
+        #[cfg(feature = "tls")]
+        let options = options.encrypted(self.live_certificate.as_deref().zip(self.live_key.as_deref()))?;
         let page = LivePage::start(options, operator, facts()?)?;
         console::print(&page.announcement());
         Ok(Some(page))
-    }
-
-    #[cfg(feature = "tls")]
-    fn certificate(&self) -> Result<Option<Certificate>, AppError> {
-        let files = self.live_certificate.as_deref().zip(self.live_key.as_deref());
-        Ok(files.map(|(chain, key)| Certificate::of_files(chain, key)).transpose()?)
-    }
-
-    #[cfg(not(feature = "tls"))]
-    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "as with certificates")]
-    fn certificate(&self) -> Result<Option<Certificate>, AppError> {
-        Ok(None)
     }
 
     /// The page with `facts` if requested, and its feed. A drop ends the page.

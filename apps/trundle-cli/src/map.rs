@@ -3,7 +3,7 @@
 mod laser_args;
 mod tools;
 
-use crate::common_args::{BagTopicsArgs, Common, NumberArg, choice};
+use crate::common_args::{BagTopicsArgs, Common, NumberArg, NumberText, choice};
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
@@ -62,7 +62,7 @@ pub struct MapLogArgs {
     #[arg(long, hide_short_help = true, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Side of a cell, m.
-    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg(NumberText::above_zero("m")), allow_negative_numbers = true)]
     pub resolution: f64,
     /// The laser of a log.
     #[command(flatten)]

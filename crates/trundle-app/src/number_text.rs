@@ -36,6 +36,30 @@ impl NumberText {
         Self { unit, range }
     }
 
+    /// Any finite number in `unit`.
+    #[must_use]
+    pub const fn any(unit: &'static str) -> Self {
+        Self::new(unit, NumberRange::Any)
+    }
+
+    /// 0 or more in `unit`.
+    #[must_use]
+    pub const fn from_zero(unit: &'static str) -> Self {
+        Self::new(unit, NumberRange::FromZero)
+    }
+
+    /// Above 0 in `unit`.
+    #[must_use]
+    pub const fn above_zero(unit: &'static str) -> Self {
+        Self::new(unit, NumberRange::AboveZero)
+    }
+
+    /// Above 0 in `unit`, `limit` at most.
+    #[must_use]
+    pub const fn up_to(limit: f64, unit: &'static str) -> Self {
+        Self::new(unit, NumberRange::UpTo(limit))
+    }
+
     fn takes(self, value: f64) -> bool {
         value.is_finite()
             && match self.range {

@@ -9,7 +9,7 @@ pub use trial::BarnTrial;
 
 use crate::laser_run::{LaserPlan, drive};
 use crate::run_each::run_each;
-use crate::{ExperimentContext, ExperimentReport, IndexRange};
+use crate::{ExperimentContext, ExperimentReport, IndexRange, RobotExperiment};
 use std::path::PathBuf;
 use trial::{TIME_LIMIT_S, is_at_goal};
 use trundle_app::AppError;
@@ -36,11 +36,18 @@ impl BarnRequest {
     pub fn new(data: PathBuf, worlds: Option<IndexRange>, seeds: u32, robot: Option<RobotConfig>) -> Self {
         Self { data, worlds, seeds, robot }
     }
+}
 
-    /// The robot of the runs: the requested one, else the benchmark's.
-    #[must_use]
-    pub fn robot(&self) -> RobotConfig {
+impl RobotExperiment for BarnRequest {
+    const NAME: &'static str = "barn";
+    type Outcome = BarnOutcome;
+
+    fn robot(&self) -> RobotConfig {
         self.robot.clone().unwrap_or_else(jackal::robot)
+    }
+
+    fn run(&self, context: &ExperimentContext) -> Result<BarnOutcome, AppError> {
+        run(self, context)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Common parts of experiments: the request of closed-loop runs, and the report of an outcome.
 
+use crate::ExperimentContext;
 use trundle_app::AppError;
 use trundle_io::OutputFolder;
 use trundle_runtime::RobotConfig;
@@ -13,6 +14,23 @@ pub struct RunsRequest {
     pub only: Option<String>,
     /// The robot.
     pub robot: RobotConfig,
+}
+
+/// An experiment whose robot is its own, unless the request gives another.
+pub trait RobotExperiment {
+    /// Name of the experiment.
+    const NAME: &'static str;
+    /// Outcome of the experiment.
+    type Outcome: ExperimentReport;
+
+    /// The robot of the runs: the requested one, else the experiment's own.
+    fn robot(&self) -> RobotConfig;
+
+    /// Makes the runs.
+    ///
+    /// # Errors
+    /// As the function `run` of the experiment's module.
+    fn run(&self, context: &ExperimentContext) -> Result<Self::Outcome, AppError>;
 }
 
 /// The report of an experiment's outcome.

@@ -11,7 +11,7 @@ use crate::laser_run::{LaserPlan, drive};
 use crate::map_scene::{map_from, scene_of_map};
 use crate::mrpb::{body, robot};
 use crate::run_each::run_each;
-use crate::{ExperimentContext, ExperimentReport};
+use crate::{ExperimentContext, ExperimentReport, RobotExperiment};
 use places::{Course, Place};
 use trundle_app::AppError;
 use trundle_app::operator::OperatorLink;
@@ -39,11 +39,18 @@ impl KnownMapRequest {
     pub fn new(seeds: u32, only: Option<String>, robot: Option<RobotConfig>) -> Self {
         Self { seeds, only, robot }
     }
+}
 
-    /// The robot of the runs.
-    #[must_use]
-    pub fn robot(&self) -> RobotConfig {
+impl RobotExperiment for KnownMapRequest {
+    const NAME: &'static str = "known-map";
+    type Outcome = KnownMapOutcome;
+
+    fn robot(&self) -> RobotConfig {
         self.robot.clone().unwrap_or_else(robot)
+    }
+
+    fn run(&self, context: &ExperimentContext) -> Result<KnownMapOutcome, AppError> {
+        run(self, context)
     }
 }
 

@@ -44,7 +44,7 @@ mod wired_trial;
 
 pub use experiment_context::{ExperimentContext, RunSource};
 pub use experiment_display::{ExperimentDisplay, RunResult, StagedRun};
-pub use experiment_report::{ExperimentReport, RunsRequest};
+pub use experiment_report::{ExperimentReport, RobotExperiment, RunsRequest};
 pub use index_range::IndexRange;
 pub use shards::{KeptRuns, RunOrigin, Shard, ShardManifest, ShardWriter, shard_arguments};
 pub use trial::{ComputerFault, Trial, TrialPlan, run_all, run_one};

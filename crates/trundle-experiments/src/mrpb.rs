@@ -11,7 +11,7 @@ pub use trial::MrpbTrial;
 use crate::laser_run::{LaserPlan, drive, hokuyo};
 use crate::run_each::run_each;
 use crate::simulated::simulated_body;
-use crate::{ExperimentContext, ExperimentReport};
+use crate::{ExperimentContext, ExperimentReport, RobotExperiment};
 use course::Course;
 use std::path::{Path, PathBuf};
 use trial::{GOAL_TOLERANCE_M, GOAL_TOLERANCE_RAD};
@@ -51,11 +51,18 @@ impl MrpbRequest {
     pub fn new(data: PathBuf, only: Option<String>, seeds: u32, robot: Option<RobotConfig>) -> Self {
         Self { data, only, seeds, robot }
     }
+}
 
-    /// The robot of the runs: the requested one, else the benchmark's.
-    #[must_use]
-    pub fn robot(&self) -> RobotConfig {
+impl RobotExperiment for MrpbRequest {
+    const NAME: &'static str = "mrpb";
+    type Outcome = MrpbOutcome;
+
+    fn robot(&self) -> RobotConfig {
         self.robot.clone().unwrap_or_else(benchmark_robot)
+    }
+
+    fn run(&self, context: &ExperimentContext) -> Result<MrpbOutcome, AppError> {
+        run(self, context)
     }
 }
 

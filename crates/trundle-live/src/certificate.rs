@@ -2,7 +2,7 @@
 
 /// Certificate and key of the page. Copies share them. Without the feature `tls` no value exists.
 #[derive(Clone)]
-pub struct Certificate {
+pub struct PageCertificate {
     #[cfg(feature = "tls")]
     acceptor: tokio_rustls::TlsAcceptor,
     #[cfg(feature = "tls")]
@@ -12,9 +12,9 @@ pub struct Certificate {
 }
 
 /// A debug text must not show the key.
-impl std::fmt::Debug for Certificate {
+impl std::fmt::Debug for PageCertificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Certificate")
+        f.write_str("PageCertificate")
     }
 }
 
@@ -22,11 +22,11 @@ impl std::fmt::Debug for Certificate {
 mod without_tls {
     //! A build without TLS: there is no certificate.
 
-    use super::Certificate;
+    use super::PageCertificate;
     use std::io;
     use tokio::net::TcpStream;
 
-    impl Certificate {
+    impl PageCertificate {
         pub(crate) fn covers(&self, _name: &str) -> bool {
             match self.never {}
         }
@@ -45,7 +45,7 @@ mod without_tls {
 mod with_tls {
     //! TLS 1.2 and 1.3 by rustls, with the cryptography of graviola, which is Rust alone.
 
-    use super::Certificate;
+    use super::PageCertificate;
     use crate::LiveError;
     use std::fs::File;
     use std::io::{self, Read};
@@ -66,7 +66,7 @@ mod with_tls {
     /// Protocol that the page speaks within TLS. Source: RFC 7301.
     const HTTP_1: &[u8] = b"http/1.1";
 
-    impl Certificate {
+    impl PageCertificate {
         /// The certificate of a file, with the others of its chain, and the key of another file; both are PEM.
         ///
         /// # Errors

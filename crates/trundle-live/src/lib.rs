@@ -38,7 +38,7 @@ mod wire;
 
 pub use access::{Access, Tokens};
 pub use address::LiveAddress;
-pub use certificate::Certificate;
+pub use certificate::PageCertificate;
 pub use error::LiveError;
 pub use options::LiveOptions;
 pub use run_facts::{RunFacts, RunKind};

@@ -1,6 +1,6 @@
 //! Options of the live page.
 
-use crate::{Certificate, LiveAddress, Tokens};
+use crate::{LiveAddress, PageCertificate, Tokens};
 use trundle_app::operator::MapFolder;
 
 /// Options of the live page.
@@ -16,7 +16,7 @@ pub struct LiveOptions {
     /// Maps that may be loaded.
     pub maps: Option<MapFolder>,
     /// Certificate of an encrypted page.
-    pub certificate: Option<Certificate>,
+    pub certificate: Option<PageCertificate>,
 }
 
 impl LiveOptions {
@@ -28,5 +28,18 @@ impl LiveOptions {
         maps: Option<MapFolder>,
     ) -> Self {
         Self { address, tokens, is_steered, maps, certificate: None }
+    }
+
+    /// The page encrypted by a certificate and its key, if their files are given.
+    ///
+    /// # Errors
+    /// As [`PageCertificate::of_files`].
+    #[cfg(feature = "tls")]
+    pub fn encrypted(
+        mut self,
+        files: Option<(&std::path::Path, &std::path::Path)>,
+    ) -> Result<Self, crate::LiveError> {
+        self.certificate = files.map(|(chain, key)| PageCertificate::of_files(chain, key)).transpose()?;
+        Ok(self)
     }
 }

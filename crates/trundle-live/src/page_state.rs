@@ -5,7 +5,7 @@ use crate::run_facts::RunFacts;
 use crate::steering::RunSteering;
 use crate::viewer_list::ViewerList;
 use crate::wire::MapTiles;
-use crate::{Certificate, LiveOptions, Tokens};
+use crate::{LiveOptions, PageCertificate, Tokens};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 use trundle_app::operator::Operator;
@@ -22,7 +22,7 @@ pub struct PageState {
     /// Whether other machines can reach the page.
     pub is_shared: bool,
     /// Certificate of an encrypted page.
-    pub certificate: Option<Certificate>,
+    pub certificate: Option<PageCertificate>,
     /// Facts of the run, sent once.
     pub facts: RunFacts,
     /// Sends commands.

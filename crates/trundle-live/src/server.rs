@@ -5,7 +5,7 @@ use crate::history::HISTORY_PERIOD;
 use crate::http;
 use crate::page_state::PageState;
 use crate::run_facts::RunFacts;
-use crate::{Certificate, LiveError, LiveOptions};
+use crate::{LiveError, LiveOptions, PageCertificate};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -31,7 +31,7 @@ const END_CHECK_PERIOD: Duration = Duration::from_millis(5);
 pub struct LivePage {
     address: SocketAddr,
     is_shared: bool,
-    certificate: Option<Certificate>,
+    certificate: Option<PageCertificate>,
     drive_token: Option<String>,
     view_token: String,
     end: Option<oneshot::Sender<()>>,

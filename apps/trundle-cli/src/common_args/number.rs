@@ -4,33 +4,11 @@ use clap::builder::TypedValueParser;
 use clap::error::ErrorKind;
 use clap::{Arg, Command, Error};
 use std::ffi::OsStr;
-use trundle::app::{NumberRange, NumberText};
+pub use trundle::app::NumberText;
 
 /// The number of an option.
 #[derive(Debug, Clone, Copy)]
 pub struct NumberArg(pub NumberText);
-
-impl NumberArg {
-    /// Any finite number in `unit`.
-    pub const fn any(unit: &'static str) -> Self {
-        Self(NumberText::new(unit, NumberRange::Any))
-    }
-
-    /// 0 or more in `unit`.
-    pub const fn from_zero(unit: &'static str) -> Self {
-        Self(NumberText::new(unit, NumberRange::FromZero))
-    }
-
-    /// Above 0 in `unit`.
-    pub const fn above_zero(unit: &'static str) -> Self {
-        Self(NumberText::new(unit, NumberRange::AboveZero))
-    }
-
-    /// Above 0 in `unit`, `limit` at most.
-    pub const fn up_to(limit: f64, unit: &'static str) -> Self {
-        Self(NumberText::new(unit, NumberRange::UpTo(limit)))
-    }
-}
 
 impl TypedValueParser for NumberArg {
     type Value = f64;

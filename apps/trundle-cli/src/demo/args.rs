@@ -1,6 +1,6 @@
 //! The command line of `trundle demo`.
 
-use crate::common_args::{Common, NumberArg, PlaceArgs, PoseArg, RobotArgs, choice};
+use crate::common_args::{Common, NumberArg, NumberText, PlaceArgs, PoseArg, RobotArgs, choice};
 use crate::live::LiveArgs;
 use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::Args;
@@ -37,7 +37,7 @@ pub struct DemoArgs {
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
     /// End the run after this time of the robot, s [default: 600 per goal, 1800 for exploring]
-    #[arg(long, value_name = "S", value_parser = NumberArg::above_zero("s"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = NumberArg(NumberText::above_zero("s")), allow_negative_numbers = true)]
     pub time_limit: Option<f64>,
     /// The robot's settings.
     #[command(flatten)]

@@ -1,6 +1,6 @@
 //! The command line of `trundle dock`.
 
-use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs, choice};
+use crate::common_args::{Common, NumberArg, NumberText, PoseArg, RobotArgs, choice};
 use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::Args;
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ pub struct DockArgs {
     #[arg(long)]
     pub through_unknown: bool,
     /// Margin from every obstacle, m [default: the robot file's docking.planner.margin, which is 0.05; without a robot file 0.01]
-    #[arg(long, value_name = "M", value_parser = NumberArg::from_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = NumberArg(NumberText::from_zero("m")), allow_negative_numbers = true)]
     pub margin: Option<f64>,
     /// The robot: its footprint, and the settings of [docking.planner], with which the robot itself plans.
     #[command(flatten)]

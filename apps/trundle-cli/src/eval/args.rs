@@ -1,6 +1,6 @@
 //! The command line of `trundle eval`.
 
-use crate::common_args::{Common, NumberArg, PoseArg, choice};
+use crate::common_args::{Common, NumberArg, NumberText, PoseArg, choice};
 use crate::output_args::OutputDirArg;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -40,7 +40,7 @@ pub struct TrajectoryArgs {
     #[arg(long, value_name = "HOW", default_value = "se3", value_parser = choice(&Alignment::CHOICES))]
     pub align: Alignment,
     /// Length of the motions of the relative error, in --unit.
-    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = NumberArg::above_zero(""), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = NumberArg(NumberText::above_zero("")), allow_negative_numbers = true)]
     pub delta: f64,
     /// Unit of --delta.
     #[arg(long, default_value = "frames", value_parser = choice(&DeltaUnit::CHOICES))]
@@ -49,7 +49,7 @@ pub struct TrajectoryArgs {
     #[arg(long)]
     pub all_pairs: bool,
     /// Poses further apart in time than this are not compared, s.
-    #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = NumberArg::from_zero("s"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = NumberArg(NumberText::from_zero("s")), allow_negative_numbers = true)]
     pub max_difference: f64,
     /// Write report.html, its pictures and summary.json into this folder; the previous one is renamed to DIR.1
     #[arg(long, value_name = "DIR")]
@@ -75,7 +75,7 @@ pub struct RelationsArgs {
     #[arg(long)]
     pub file: bool,
     /// A pose is matched to a time at most this far away, s.
-    #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = NumberArg::from_zero("s"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = NumberArg(NumberText::from_zero("s")), allow_negative_numbers = true)]
     pub max_difference: f64,
     /// Write summary.json into this folder; the previous one is renamed to DIR.1
     #[arg(long, value_name = "DIR")]
@@ -103,7 +103,7 @@ pub struct MapsArgs {
     #[arg(long)]
     pub exact: bool,
     /// Occupied cells agree if their centres are at most this far apart, m.
-    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg(NumberText::above_zero("m")), allow_negative_numbers = true)]
     pub within: f64,
     /// Write summary.json into this folder; the previous one is renamed to DIR.1
     #[arg(long, value_name = "DIR")]

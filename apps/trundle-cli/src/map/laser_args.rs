@@ -1,6 +1,6 @@
 //! The options of `trundle map` for laser logs.
 
-use crate::common_args::{BagTopicsArgs, NumberArg};
+use crate::common_args::{BagTopicsArgs, NumberArg, NumberText};
 use clap::Args;
 use trundle::io::LaserLogOptions;
 
@@ -8,16 +8,16 @@ use trundle::io::LaserLogOptions;
 #[derive(Debug, Args)]
 pub struct LaserArgs {
     /// Position of the laser ahead of the base's origin, m [default: the log's]
-    #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = NumberArg(NumberText::any("m")), allow_negative_numbers = true)]
     pub laser_x: Option<f64>,
     /// Turn of the laser to the left, deg [default: the log's]
-    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = NumberArg(NumberText::any("deg")), allow_negative_numbers = true)]
     pub laser_turn: Option<f64>,
     /// The laser is mounted upside down.
     #[arg(long)]
     pub upside_down: bool,
     /// Smallest range that is no return, m [default: the most frequent largest reading]
-    #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = NumberArg(NumberText::above_zero("m")), allow_negative_numbers = true)]
     pub max_range: Option<f64>,
 }
 

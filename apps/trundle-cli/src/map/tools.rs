@@ -1,6 +1,6 @@
 //! `trundle map crop`, `rotate`, `diff`, `merge` and `rooms`: tools for finished maps.
 
-use crate::common_args::{Common, NumberArg, PoseArg, choice};
+use crate::common_args::{Common, NumberArg, NumberText, PoseArg, choice};
 use crate::outcome::Outcome;
 use crate::output_args::OutputDirArg;
 use crate::{console, logging};
@@ -69,7 +69,7 @@ pub struct RotateArgs {
     #[arg(long, value_name = "WHAT", required_unless_present = "by", value_parser = choice(&RotationTarget::CHOICES))]
     pub to: Option<RotationTarget>,
     /// The turn, counter-clockwise, deg.
-    #[arg(long, value_name = "DEG", conflicts_with = "to", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", conflicts_with = "to", value_parser = NumberArg(NumberText::any("deg")), allow_negative_numbers = true)]
     pub by: Option<f64>,
     /// The results.
     #[command(flatten)]
@@ -94,7 +94,7 @@ pub struct DiffArgs {
     #[arg(long, conflicts_with = "at")]
     pub align: bool,
     /// Occupied cells agree if their centres are at most this far apart, m.
-    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = NumberArg::from_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = NumberArg(NumberText::from_zero("m")), allow_negative_numbers = true)]
     pub within: f64,
     /// The results.
     #[command(flatten)]
@@ -131,13 +131,13 @@ pub struct RoomsArgs {
     #[arg(long, value_name = "FILE")]
     pub places: Option<PathBuf>,
     /// Width up to which an opening divides rooms, m.
-    #[arg(long, value_name = "M", default_value_t = RoomLimits::default().max_door_m, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = RoomLimits::default().max_door_m, value_parser = NumberArg(NumberText::above_zero("m")), allow_negative_numbers = true)]
     pub door: f64,
     /// Smallest area of a room, m2.
-    #[arg(long, value_name = "M2", default_value_t = RoomLimits::default().min_area_m2, value_parser = NumberArg::above_zero("m2"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M2", default_value_t = RoomLimits::default().min_area_m2, value_parser = NumberArg(NumberText::above_zero("m2")), allow_negative_numbers = true)]
     pub min_area: f64,
     /// Length up to which an obstacle that stands free is furniture, not a wall, m.
-    #[arg(long, value_name = "M", default_value_t = RoomLimits::default().max_furniture_m, value_parser = NumberArg::from_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = RoomLimits::default().max_furniture_m, value_parser = NumberArg(NumberText::from_zero("m")), allow_negative_numbers = true)]
     pub furniture: f64,
     /// The results.
     #[command(flatten)]

@@ -1,6 +1,6 @@
 //! The command line of `trundle plan`.
 
-use crate::common_args::{Common, NumberArg, RobotArgs};
+use crate::common_args::{Common, NumberArg, NumberText, RobotArgs};
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
@@ -41,7 +41,7 @@ pub struct PlanArgs {
     #[arg(long, value_name = "FILE")]
     pub graph: Option<PathBuf>,
     /// If a goal is blocked, stop at the nearest reachable point, at most this far away, m [default when given: 1]
-    #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = NumberArg::from_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = NumberArg(NumberText::from_zero("m")), allow_negative_numbers = true)]
     pub near: Option<f64>,
     /// Print the curve's polynomials and its active constraints.
     #[arg(long)]

@@ -1,6 +1,6 @@
 //! The command line of `trundle ros2`.
 
-use crate::common_args::{NumberArg, PoseArg};
+use crate::common_args::{NumberArg, NumberText, PoseArg};
 use crate::live::LiveArgs;
 use crate::output_args::OutputDirArg;
 use crate::ros_node::RosArgs;
@@ -49,7 +49,7 @@ pub struct Ros2Args {
     #[arg(long)]
     pub stay: bool,
     /// Longest wait for the robot's topics, s
-    #[arg(long, value_name = "S", default_value_t = 30.0, value_parser = NumberArg::above_zero("s"))]
+    #[arg(long, value_name = "S", default_value_t = 30.0, value_parser = NumberArg(NumberText::above_zero("s")))]
     pub wait: f64,
     /// Files, time and settings.
     #[command(flatten)]

@@ -1,6 +1,6 @@
 //! The command line of `trundle run`.
 
-use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs, choice};
+use crate::common_args::{Common, NumberArg, NumberText, PoseArg, RobotArgs, choice};
 use crate::live::LiveArgs;
 use crate::output_args::{ContinuedFileArg, EditedFileArg, OutputDirArg, OutputFileArg};
 use clap::Args;
@@ -66,7 +66,7 @@ pub struct RunOptions {
     #[arg(long, value_name = "FILE")]
     pub vocabulary: Option<PathBuf>,
     /// End the run after this time, s [default: none]
-    #[arg(long, value_name = "S", value_parser = NumberArg::above_zero("s"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = NumberArg(NumberText::above_zero("s")), allow_negative_numbers = true)]
     pub time_limit: Option<f64>,
     /// The robot's settings.
     #[command(flatten)]

@@ -1,11 +1,11 @@
 //! The command line of `trundle sim`.
 
-use crate::common_args::{Common, NumberArg, PlaceArgs, choice};
+use crate::common_args::{Common, NumberArg, NumberText, PlaceArgs, choice};
 use crate::live::ViewArgs;
 use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::{ArgGroup, Args};
 use std::path::PathBuf;
-use trundle::app::{AppError, NumberText};
+use trundle::app::AppError;
 use trundle::experiments::simulated::read_faults;
 use trundle::io::MapImage;
 use trundle::live::LiveAddress;
@@ -69,7 +69,7 @@ pub struct DriverArgs {
     #[arg(long, groups = ["driver", "map_use"])]
     pub keys: bool,
     /// Stop after this simulated time, s, or at the end of the drive [default: 5 without a drive]
-    #[arg(long, value_name = "S", value_parser = NumberArg::up_to(1e6, "s"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = NumberArg(NumberText::up_to(1e6, "s")), allow_negative_numbers = true)]
     pub duration: Option<f64>,
 }
 
@@ -101,7 +101,7 @@ pub struct TrueMapArgs {
     #[arg(long, value_name = "M", default_value_t = 0.05, requires = "map_use", value_parser = NumberArg(NumberText::CELL_SIDE), allow_negative_numbers = true)]
     pub resolution: f64,
     /// Height band of obstacles, m, for the map [default: the robot's]
-    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], hide_short_help = true, requires = "map_use", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], hide_short_help = true, requires = "map_use", value_parser = NumberArg(NumberText::any("m")), allow_negative_numbers = true)]
     pub band: Option<Vec<f64>>,
 }
 
@@ -123,7 +123,7 @@ pub struct SensorArgs {
     #[arg(long, default_value = "kinect-v2", value_parser = choice(&SimConfig::CAMERAS))]
     pub camera: fn() -> SimConfig,
     /// Images per second.
-    #[arg(long, value_name = "HZ", value_parser = NumberArg::above_zero("Hz"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", value_parser = NumberArg(NumberText::above_zero("Hz")), allow_negative_numbers = true)]
     pub rate: Option<f64>,
     /// A 2-D laser on the robot.
     #[arg(long, value_name = "PRESET", value_parser = choice(&LaserConfig::PRESETS))]

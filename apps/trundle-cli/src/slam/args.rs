@@ -1,6 +1,6 @@
 //! The command line of `trundle slam`.
 
-use crate::common_args::{BagTopicsArgs, Common, NumberArg, RobotArgs, choice};
+use crate::common_args::{BagTopicsArgs, Common, NumberArg, NumberText, RobotArgs, choice};
 use crate::live::ViewArgs;
 use crate::output_args::{OutputDirArg, ResultFileArg};
 use clap::Args;
@@ -94,7 +94,7 @@ pub struct SurfaceArgs {
     #[arg(long, value_name = "FILE")]
     pub heights: Option<ResultFileArg>,
     /// Side of a voxel of the surface, m, 0.004 to 0.5 [default: 0.02]
-    #[arg(long, value_name = "M", hide_short_help = true, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", hide_short_help = true, value_parser = NumberArg(NumberText::above_zero("m")), allow_negative_numbers = true)]
     pub voxel: Option<f64>,
 }
 
@@ -103,13 +103,13 @@ pub struct SurfaceArgs {
 pub struct FirstCameraArgs {
     /// Height of the first camera above the floor, m, for the map; with odometry, a value off by over 2 cm from the floor in the images is
     /// replaced, with a warning [default: the recorded robot's, else by the floor in the images, else 1]
-    #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = NumberArg(NumberText::any("m")), allow_negative_numbers = true)]
     pub height: Option<f64>,
     /// Downward tilt of the first camera, deg, for the map [default: as the height, else 0]
-    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = NumberArg(NumberText::any("deg")), allow_negative_numbers = true)]
     pub tilt: Option<f64>,
     /// Roll of the first camera to its right, deg, for the map [default: as the height, else 0]
-    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = NumberArg(NumberText::any("deg")), allow_negative_numbers = true)]
     pub roll: Option<f64>,
 }
 
@@ -121,7 +121,7 @@ pub struct CameraArgs {
     #[arg(long, value_name = "PRESET|FILE")]
     pub camera: Option<String>,
     /// Depth units per metre [default: the camera's]
-    #[arg(long, value_name = "N", value_parser = NumberArg::above_zero("units per metre"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = NumberArg(NumberText::above_zero("units per metre")), allow_negative_numbers = true)]
     pub depth_scale: Option<f64>,
 }
 

@@ -1,6 +1,6 @@
 //! Accepts connections: a bounded number, each with a bounded time for its request.
 
-use crate::Certificate;
+use crate::PageCertificate;
 use axum::Router;
 use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
@@ -22,7 +22,7 @@ const MAX_HEAD_BYTES: usize = 16 * 1024;
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
 /// Serves the routes until the task is dropped, encrypted with a certificate.
-pub async fn serve(listener: TcpListener, router: Router, certificate: Option<Certificate>) {
+pub async fn serve(listener: TcpListener, router: Router, certificate: Option<PageCertificate>) {
     let slots = Arc::new(Semaphore::new(MAX_CONNECTIONS));
     loop {
         let Ok((stream, _)) = listener.accept().await else {
@@ -41,7 +41,7 @@ pub async fn serve(listener: TcpListener, router: Router, certificate: Option<Ce
     }
 }
 
-async fn open_connection(stream: TcpStream, router: Router, certificate: Option<Certificate>) {
+async fn open_connection(stream: TcpStream, router: Router, certificate: Option<PageCertificate>) {
     if let Err(error) = stream.set_nodelay(true) {
         tracing::debug!("live page: {error}");
     }

@@ -13,7 +13,7 @@ use tokio_rustls::rustls::pki_types::{CertificateDer, ServerName};
 use tokio_rustls::rustls::{ClientConfig, ClientConnection, RootCertStore, StreamOwned};
 use tokio_tungstenite::client_async;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
-use trundle_live::{Access, Certificate};
+use trundle_live::{Access, PageCertificate};
 
 /// A test's certificate and key, made by `openssl req -x509` for `*.robots.example`, `robot.example` and 127.0.0.1.
 fn files() -> (PathBuf, PathBuf) {
@@ -24,7 +24,7 @@ fn files() -> (PathBuf, PathBuf) {
 fn encrypted_run() -> LiveRun {
     let (chain, key) = files();
     LiveRun::with_options(true, |options| {
-        options.certificate = Some(Certificate::of_files(&chain, &key).unwrap());
+        options.certificate = Some(PageCertificate::of_files(&chain, &key).unwrap());
     })
 }
 
@@ -114,7 +114,7 @@ fn files_that_are_no_certificate_or_no_key_are_named() {
         std::fs::write(&file, text).unwrap();
         file
     };
-    let refused = |chain: &Path, key: &Path| Certificate::of_files(chain, key).unwrap_err().to_string();
+    let refused = |chain: &Path, key: &Path| PageCertificate::of_files(chain, key).unwrap_err().to_string();
     let absent = refused(&place.path().join("absent.pem"), &key);
     assert!(absent.contains("absent.pem") && absent.contains("No such file"), "{absent}");
     assert!(refused(&key, &key).contains("it has no certificate, expected a PEM file"));
