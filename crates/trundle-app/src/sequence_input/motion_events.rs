@@ -74,7 +74,8 @@ mod tests {
     /// A drive of 2 s: ahead, with a turn that only the gyro measures.
     fn drive() -> (Vec<(Stamp, Pose2)>, Vec<GyroRate>) {
         let odometry = (0..=40).map(|i| (stamp(50 * i), Pose2::new(2.0 + 0.01 * i as f64, 1.0, 0.0)));
-        let gyro = (0..=200).map(|i| GyroRate { stamp: stamp(10 * i), omega: 0.5 });
+        // A gyro that never changes counts as stuck.
+        let gyro = (0..=200).map(|i| GyroRate { stamp: stamp(10 * i), omega: 0.5 + 1e-4 * (i % 7) as f64 });
         (odometry.collect(), gyro.collect())
     }
 
