@@ -8,7 +8,7 @@
 //!
 //! | part | purpose |
 //! |---|---|
-//! | `door` | limits of connections, the checks of Host and Origin |
+//! | `access` | limits of connections, the checks of Host and Origin |
 //! | `viewer` | one program that displays the run: its subscriptions, and the data sent to it |
 //! | `protocol` | the protocol's messages |
 //! | `topic`, `messages` | the topics, and their messages from a view of the run |
@@ -20,7 +20,7 @@
 //! # Ok::<(), String>(())
 //! ```
 
-mod door;
+mod access;
 mod error;
 mod messages;
 mod options;
@@ -29,7 +29,7 @@ mod server;
 mod topic;
 mod viewer;
 
-pub use door::PageOrigin;
+pub use access::PageOrigin;
 pub use error::FoxgloveError;
 pub use options::{DEFAULT_ADDRESS, FoxgloveOptions, read_foxglove_address};
 pub use server::FoxgloveServer;

@@ -1,6 +1,6 @@
 //! The server, on its own thread.
 
-use crate::door::{self, Guard};
+use crate::access::{self, Guard};
 use crate::viewer::ShownRun;
 use crate::{FoxgloveError, FoxgloveOptions, PageOrigin};
 use std::net::{SocketAddr, TcpListener};
@@ -95,7 +95,7 @@ impl Drop for FoxgloveServer {
 
 async fn serve(listener: TcpListener, guard: Arc<Guard>, run: Arc<ShownRun>, ended: oneshot::Receiver<()>) {
     match tokio::net::TcpListener::from_std(listener) {
-        Ok(listener) => door::serve(listener, guard, run, ended).await,
+        Ok(listener) => access::serve(listener, guard, run, ended).await,
         Err(error) => tracing::error!("the run cannot be shown in Foxglove: {error}"),
     }
 }
