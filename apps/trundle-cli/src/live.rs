@@ -18,15 +18,15 @@ pub struct ViewArgs {
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
     pub live: Option<LiveAddress>,
     /// Store the tokens of the links in FILE, which keeps links valid after restarts.
-    #[arg(long, value_name = "FILE", requires = "live")]
+    #[arg(long, value_name = "FILE", requires = "live", hide_short_help = true)]
     pub live_tokens: Option<PathBuf>,
     /// Encrypt the page with this certificate: a PEM file, with the chain.
     #[cfg(feature = "tls")]
-    #[arg(long, value_name = "FILE", requires = "live", requires = "live_key")]
+    #[arg(long, value_name = "FILE", requires = "live", requires = "live_key", hide_short_help = true)]
     pub live_certificate: Option<PathBuf>,
     /// Key of the certificate: a PEM file.
     #[cfg(feature = "tls")]
-    #[arg(long, value_name = "FILE", requires = "live_certificate")]
+    #[arg(long, value_name = "FILE", requires = "live_certificate", hide_short_help = true)]
     pub live_key: Option<PathBuf>,
 }
 
