@@ -39,7 +39,8 @@ fn a_bag_with_a_laser_is_listed_replayed_and_recorded() {
         (String::from_utf8(output.stdout).unwrap(), message)
     };
     let (list, _) = run(&["convert", text(&file), "--list"]);
-    let used = |topic: &str| list.lines().map(str::trim).find(|line| line.starts_with(topic)).unwrap().to_owned();
+    let used =
+        |topic: &str| list.lines().map(str::trim).find(|line| line.starts_with(topic)).unwrap().to_owned();
     assert!(used("/imu").ends_with("gyro") && used("/odom").ends_with("odometry"), "{list}");
     assert!(used("/scan").ends_with("laser"), "{list}");
 
