@@ -52,7 +52,9 @@ mod tests {
     fn the_excluded_packages_are_not_published() {
         let metadata = program::metadata(&crate::workspace::root()).unwrap();
         let packages = metadata["packages"].as_array().unwrap();
-        let unpublished = packages.iter().filter(|package| package["publish"].is_array());
+        let is_private =
+            |package: &&serde_json::Value| package["publish"].as_array().is_some_and(Vec::is_empty);
+        let unpublished = packages.iter().filter(is_private);
         let mut names: Vec<&str> = unpublished.map(|package| package["name"].as_str().unwrap()).collect();
         names.sort_unstable();
         assert_eq!(names, TOOLS);
