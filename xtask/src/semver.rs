@@ -34,7 +34,7 @@ fn last_release(tags: &str) -> Option<String> {
         let parts: Vec<&str> = tag.strip_prefix('v').unwrap_or_default().split('.').collect();
         parts.len() == 3 && parts.into_iter().all(is_number)
     };
-    tags.lines().map(str::trim).filter(is_release).next_back().map(str::to_owned)
+    tags.lines().map(str::trim).rfind(is_release).map(str::to_owned)
 }
 
 #[cfg(test)]

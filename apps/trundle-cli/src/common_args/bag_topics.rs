@@ -13,13 +13,13 @@ pub struct BagTopicsArgs {
     #[arg(long, value_name = "TOPIC")]
     pub depth_topic: Option<String>,
     /// The topic of the camera_info of a bag's colour images [default: the one with the same prefix]
-    #[arg(long, value_name = "TOPIC")]
+    #[arg(long, value_name = "TOPIC", hide_short_help = true)]
     pub info_topic: Option<String>,
     /// The topic of a bag's odometry, or of its transforms [default: the one with the largest number of messages]
     #[arg(long, value_name = "TOPIC")]
     pub odom_topic: Option<String>,
     /// The topic of a bag's IMU, whose gyro gives the heading [default: the one with the largest number of usable readings]
-    #[arg(long, value_name = "TOPIC")]
+    #[arg(long, value_name = "TOPIC", hide_short_help = true)]
     pub imu_topic: Option<String>,
     /// The topic of a laser's scans; in a CARMEN log the name of the lines, as RAWLASER2 [default: the one with the largest number of scans]
     #[arg(long, value_name = "TOPIC")]
