@@ -10,10 +10,13 @@ use crate::ros::messages::{LaserScan, types};
 use std::collections::BTreeMap;
 use trundle_core::{Pose3, Scan, Stamp};
 
+/// A scan with the number of its message.
+pub(in crate::ros) type NumberedScan = (usize, LaserScan);
+
 /// The scans of a bag's lasers by topic, with the numbers of their messages.
 #[derive(Default)]
 pub(in crate::ros) struct ScanMessages {
-    topics: BTreeMap<String, Vec<(usize, LaserScan)>>,
+    topics: BTreeMap<String, Vec<NumberedScan>>,
 }
 
 impl ScanMessages {
@@ -39,7 +42,7 @@ impl ScanMessages {
     pub(in crate::ros) fn take_out(
         &mut self,
         asked: Option<&str>,
-    ) -> Result<Vec<(String, Vec<(usize, LaserScan)>)>, String> {
+    ) -> Result<Vec<(String, Vec<NumberedScan>)>, String> {
         let counts = self.topics.iter().map(|(topic, scans)| (topic.clone(), scans.len())).collect();
         let asked = asked.map(|asked| chosen(&counts, Some(asked), types::LASER_SCAN)).transpose()?;
         let mut topics: Vec<_> = std::mem::take(&mut self.topics).into_iter().collect();
@@ -76,12 +79,7 @@ impl RosScans {
     }
 
     /// Takes the usable messages of a topic. Each kind of unusable messages gives a warning.
-    fn of(
-        topic: &str,
-        messages: Vec<(usize, LaserScan)>,
-        place: &BasePlace<'_>,
-        warnings: &mut Warnings,
-    ) -> Self {
+    fn of(topic: &str, messages: Vec<NumberedScan>, place: &BasePlace<'_>, warnings: &mut Warnings) -> Self {
         let mut scans = Self::default();
         for (number, message) in messages {
             let before = scans.sweeps.last().map(|sweep| sweep.message.ranges.len());
@@ -124,7 +122,7 @@ fn last_beam_s(scan: &Scan) -> f64 {
 
 /// The topic and the scans of the first of `topics` with a usable scan; `None` if there is none.
 pub(in crate::ros) fn choose_scans(
-    topics: Vec<(String, Vec<(usize, LaserScan)>)>,
+    topics: Vec<(String, Vec<NumberedScan>)>,
     place: &BasePlace<'_>,
     warnings: &mut Warnings,
 ) -> Option<(String, RosScans)> {
