@@ -32,7 +32,7 @@ run() {
 # The features are those of the program, so that its crates are not built twice.
 interface_bytes() {
     cargo build --quiet --release --manifest-path "$here/../../Cargo.toml" --target-dir "$target" --package trundle-ros2 \
-        --package trundle-cli --features trundle-cli/ros2,trundle-cli/mqtt,trundle-cli/tls --example interface_bytes
+        --package trundle-cli --features trundle-cli/ros2,trundle-cli/mqtt,trundle-cli/foxglove,trundle-cli/tls --example interface_bytes
 }
 
 run interfaces.py
