@@ -17,7 +17,7 @@ const MAX_DEPTH: usize = 3;
 pub fn run(root: &Path, trundle: &Path, is_check: bool) -> Verdict {
     let mut text = String::from(
         "# Commands\n\n<!-- Written by cargo xtask commands from the program's own help. -->\n\nThe help of each command, as `trundle COMMAND --help` prints it. The program has the \
-         features of a release: `ros2`, `mqtt`, `tls`.\n",
+         features of a release: `ros2`, `mqtt`, `foxglove`, `tls`.\n",
     );
     append(&mut text, trundle, &[])?;
     let page = root.join(PAGE);

@@ -43,6 +43,10 @@ impl Tokens {
     /// When the file cannot be read or written, or holds no tokens.
     pub fn of_file(file: &Path) -> Result<Self, LiveError> {
         let broken = |problem: String| LiveError::TokenFile { file: file.to_owned(), problem };
+        // A pipe without a writer would hold the start up for ever.
+        if std::fs::metadata(file).is_ok_and(|meta| !meta.is_file()) {
+            return Err(broken("not a regular file, expected a file of two lines".to_owned()));
+        }
         match std::fs::File::open(file) {
             Ok(open) => {
                 let mut text = String::new();

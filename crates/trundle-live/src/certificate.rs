@@ -79,7 +79,7 @@ mod with_tls {
                 broken(chain, "it has no certificate, expected a PEM file with BEGIN CERTIFICATE")
             })?;
             EndEntityCert::try_from(&own)
-                .map_err(|problem| broken(chain, format!("not a certificate of a server: {problem}")))?;
+                .map_err(|problem| broken(chain, format!("not a certificate of a server: {problem}; expected X.509 version 3 with subjectAltName")))?;
             let secret = PrivateKeyDer::from_pem_slice(&read(key)?);
             let secret = secret.map_err(|_| {
                 broken(key, "it has no key, expected a PEM file with BEGIN PRIVATE KEY, not encrypted")
@@ -146,6 +146,10 @@ mod with_tls {
 
     fn read(file: &Path) -> Result<Vec<u8>, LiveError> {
         let mut bytes = Vec::new();
+        // A pipe without a writer would hold the start up for ever.
+        if std::fs::metadata(file).is_ok_and(|meta| !meta.is_file()) {
+            return Err(broken(file, "not a regular file, expected a PEM file"));
+        }
         let open = File::open(file).and_then(|open| open.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes));
         open.map_err(|problem| broken(file, problem.to_string()))?;
         if bytes.len() as u64 > MAX_FILE_BYTES {
@@ -169,7 +173,9 @@ mod with_tls {
             }
             _ => broken(
                 key,
-                format!("the key cannot be used: {problem}; expected RSA, ECDSA (P-256, P-384) or Ed25519"),
+                format!(
+                    "expected a key of RSA, ECDSA (P-256, P-384) or Ed25519; this one cannot be used: {problem}"
+                ),
             ),
         }
     }

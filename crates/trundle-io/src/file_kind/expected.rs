@@ -80,7 +80,12 @@ impl Expected {
     }
 
     fn takes(self, found: FileKind) -> bool {
-        found == K::Stream || self.kinds().contains(&found)
+        found == K::Stream && !self.is_read_twice() || self.kinds().contains(&found)
+    }
+
+    /// Whether files of this kind are read twice, which a pipe cannot be.
+    fn is_read_twice(self) -> bool {
+        matches!(self, Self::LaserLog | Self::Sequence | Self::Recording)
     }
 
     /// The accepted kinds. Readers of text accept text of no known kind too: their errors name the line.

@@ -157,6 +157,17 @@ fn a_refusal_says_what_it_is_and_what_to_do() {
     assert!(Expected::Map.check(&dir.path().join("gone")).is_err());
 }
 
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused_where_a_file_is_read_twice() {
+    let device = std::path::Path::new("/dev/null");
+    for expected in [Expected::LaserLog, Expected::Sequence, Expected::Recording] {
+        let problem = expected.check(device).unwrap_err().to_string();
+        assert!(problem.contains("a pipe or device") && problem.contains("read twice"), "{problem}");
+    }
+    assert_eq!(Expected::Toml.check(device).unwrap(), K::Stream);
+}
+
 proptest! {
     #[test]
     fn any_bytes_have_a_kind(bytes in prop::collection::vec(any::<u8>(), 0..300), text in ".{0,200}", len in any::<u64>()) {

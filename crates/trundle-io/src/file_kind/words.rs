@@ -93,7 +93,7 @@ const WORDS: &[(FileKind, &str, &str)] = &[
     (K::Utf16Text, "text in UTF-16", "save it as UTF-8"),
     (K::Binary, "a binary file of no known kind", ""),
     (K::Empty, "an empty file", ""),
-    (K::Stream, "a pipe or device", ""),
+    (K::Stream, "a pipe or device", "write its content into a file, which is read twice"),
     (K::SequenceFolder, "a TUM RGB-D folder", "`trundle slam` and `trundle map` read it"),
     (K::EurocFolder, "an EuRoC folder", ""),
     (K::RunFolder, "the folder of a trundle run", "`trundle replay FOLDER/recording.mcap` runs it again"),

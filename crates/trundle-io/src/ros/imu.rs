@@ -4,7 +4,10 @@ use super::cdr::{CdrError, CdrReader, Wire};
 use super::message::NOT_MEASURED;
 use super::messages::{header, types};
 use nalgebra::UnitQuaternion;
-use trundle_core::{GyroRate, Invalid, Stamp, Vector3, require_finite};
+use trundle_core::{GyroRate, Invalid, Stamp, Vector3, require_finite, require_in};
+
+/// Largest turn rate of a reading, rad/s: 2000 deg/s, the range of the usual gyros. Source: data sheets of BMI055, ICM-20948, LSM6DS.
+const MAX_TURN_RATE_RAD_S: f64 = 34.91;
 
 /// The turn rate of an IMU.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +24,7 @@ impl ImuReading {
     /// The turn rate around the base's vertical axis. `base_from_imu` is the rotation of the sensor on the base.
     ///
     /// # Errors
-    /// When the sensor measures no turn rate, or a rate is not finite.
+    /// When the sensor measures no turn rate, or a rate is not finite or beyond the range of gyros.
     pub fn gyro_rate(&self, base_from_imu: &UnitQuaternion<f64>) -> Result<GyroRate, Invalid> {
         if self.covariance == NOT_MEASURED {
             let expected = "0 or above: a measured turn rate";
@@ -32,6 +35,7 @@ impl ImuReading {
             .zip(&self.angular_velocity)
         {
             require_finite(name, *value, "rad/s")?;
+            require_in(name, *value, "rad/s", -MAX_TURN_RATE_RAD_S, MAX_TURN_RATE_RAD_S)?;
         }
         Ok(GyroRate { stamp: self.stamp, omega: (base_from_imu * self.angular_velocity).z })
     }
@@ -65,6 +69,8 @@ mod tests {
         reading.angular_velocity.y = f64::NAN;
         let problem = reading.gyro_rate(&level).unwrap_err().to_string();
         assert!(problem.starts_with("angular_velocity.y is NaN rad/s"), "{problem}");
+        reading.angular_velocity.y = 1e30;
+        assert!(reading.gyro_rate(&level).unwrap_err().to_string().contains("rad/s, expected"));
         reading.covariance = -1.0;
         assert!(reading.gyro_rate(&level).unwrap_err().to_string().contains("a measured turn rate"));
     }

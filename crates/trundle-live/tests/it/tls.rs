@@ -118,6 +118,7 @@ fn files_that_are_no_certificate_or_no_key_are_named() {
     let absent = refused(&place.path().join("absent.pem"), &key);
     assert!(absent.contains("absent.pem") && absent.contains("No such file"), "{absent}");
     assert!(refused(&key, &key).contains("it has no certificate, expected a PEM file"));
+    assert!(refused(Path::new("/dev/null"), &key).contains("not a regular file"));
     assert!(refused(&chain, &chain).contains("it has no key, expected a PEM file"));
     assert!(refused(&file("text", "hello"), &key).contains("it has no certificate"));
     assert!(refused(&file("large", &"-".repeat(300_000)), &key).contains("more than 262144 bytes"));
