@@ -1,6 +1,7 @@
 //! Permissions to drive and to view: two random tokens.
 
 use crate::LiveError;
+use crate::start_file::open_regular;
 use std::fmt::Write as _;
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Read, Write};
@@ -43,11 +44,7 @@ impl Tokens {
     /// When the file cannot be read or written, or holds no tokens.
     pub fn of_file(file: &Path) -> Result<Self, LiveError> {
         let broken = |problem: String| LiveError::TokenFile { file: file.to_owned(), problem };
-        // A pipe without a writer would hold the start up for ever.
-        if std::fs::metadata(file).is_ok_and(|meta| !meta.is_file()) {
-            return Err(broken("not a regular file, expected a file of two lines".to_owned()));
-        }
-        match std::fs::File::open(file) {
+        match open_regular(file, "a file of two lines") {
             Ok(open) => {
                 let mut text = String::new();
                 open.take(MAX_TOKEN_FILE_BYTES)

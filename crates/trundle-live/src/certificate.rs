@@ -47,7 +47,7 @@ mod with_tls {
 
     use super::PageCertificate;
     use crate::LiveError;
-    use std::fs::File;
+    use crate::start_file::open_regular;
     use std::io::{self, Read};
     use std::path::Path;
     use std::sync::Arc;
@@ -146,11 +146,8 @@ mod with_tls {
 
     fn read(file: &Path) -> Result<Vec<u8>, LiveError> {
         let mut bytes = Vec::new();
-        // A pipe without a writer would hold the start up for ever.
-        if std::fs::metadata(file).is_ok_and(|meta| !meta.is_file()) {
-            return Err(broken(file, "not a regular file, expected a PEM file"));
-        }
-        let open = File::open(file).and_then(|open| open.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes));
+        let open = open_regular(file, "a PEM file")
+            .and_then(|open| open.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes));
         open.map_err(|problem| broken(file, problem.to_string()))?;
         if bytes.len() as u64 > MAX_FILE_BYTES {
             return Err(broken(

@@ -31,6 +31,7 @@ mod options;
 mod page_state;
 mod run_facts;
 mod server;
+mod start_file;
 mod steering;
 mod viewer;
 mod viewer_list;

@@ -4,7 +4,7 @@ use super::LaserLogScan;
 use crate::EvenSample;
 use trundle_core::{Beam, Pose2, Stamp};
 
-/// Size at which a sample of values is thinned. Source: ours; the median of a quarter of so many values is that of all within a hundredth.
+/// Size at which a sample of values is thinned. Source: ours; the median of a quarter of these values is that of all within a hundredth.
 const MAX_SAMPLE_SIZE: usize = 1 << 16;
 
 /// Numbers of the scans of a log. Medians are those of an even sample of the values.
