@@ -967,7 +967,9 @@ await check("an encrypted page: the certificate's origin, a link, and nothing in
     assert.match(other.drive, /^https:/);
     await until("a state", () => viewer.state !== null);
     assert(await viewer.page.evaluate(() => window.isSecureContext));
-    await assert.rejects(fetch(other.drive.replace("https:", "http:")));
+    const clear = await fetch(other.drive.replace("https:", "http:"));
+    assert.equal(clear.status, 400);
+    assert.match(await clear.text(), new RegExp(`^This page is encrypted.*${new URL(other.drive).origin}/#`));
     return new URL(other.drive).origin.replace(/\d+$/, "PORT");
   } finally {
     await viewer.context.close();

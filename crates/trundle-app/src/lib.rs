@@ -26,6 +26,7 @@
 
 mod best_view;
 mod body_log;
+mod bounded_file;
 pub mod calibrate;
 mod checkpoint_file;
 mod checkpoint_writer;
@@ -86,6 +87,7 @@ mod written_files;
 
 pub use best_view::BestView;
 pub use body_log::BodyLog;
+pub use bounded_file::{BoundedFile, BoundedFileError};
 pub use checkpoint_file::read_checkpoint;
 pub use checkpoint_writer::CheckpointWriter;
 pub use encoded_body::{EncodedBody, RunInput};

@@ -3,5 +3,5 @@
 mod address;
 mod own_name;
 
-pub use address::read_address;
+pub use address::{is_shared, read_address};
 pub use own_name::{is_own_name, name_of_host};

@@ -8,7 +8,7 @@
 //!
 //! | part | purpose |
 //! |---|---|
-//! | `access` | limits of connections, the checks of Host and Origin |
+//! | `access` | the limit of viewers, the checks of Host and Origin |
 //! | `viewer` | one program that displays the run: its subscriptions, and the data sent to it |
 //! | `protocol` | the protocol's messages |
 //! | `topic`, `messages` | the topics, and their messages from a view of the run |

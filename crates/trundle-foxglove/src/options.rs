@@ -27,11 +27,6 @@ impl FoxgloveOptions {
     pub const fn new(address: SocketAddr, name: String) -> Self {
         Self { address, name, origins: Vec::new() }
     }
-
-    /// Whether other machines can reach the server.
-    pub(crate) fn is_shared(&self) -> bool {
-        !self.address.ip().is_loopback()
-    }
 }
 
 /// Reads an address: `IP:PORT`, an IP, or a port of the loopback address.
@@ -45,15 +40,11 @@ pub fn read_foxglove_address(text: &str) -> Result<SocketAddr, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trundle_app::listening::is_shared;
 
     #[test]
     fn the_default_of_foxglove_is_loopback_and_not_shared() {
-        let is_shared = |text: &str| {
-            let address = read_foxglove_address(text).unwrap();
-            FoxgloveOptions::new(address, String::new()).is_shared()
-        };
-        assert_eq!(read_foxglove_address(DEFAULT_ADDRESS).unwrap().port(), DEFAULT_PORT);
-        assert!(!is_shared(DEFAULT_ADDRESS) && !is_shared("[::1]:1") && !is_shared("9000"));
-        assert!(is_shared("0.0.0.0") && is_shared("192.168.1.4:8765"));
+        let default = read_foxglove_address(DEFAULT_ADDRESS).unwrap();
+        assert!(default.port() == DEFAULT_PORT && !is_shared(default));
     }
 }

@@ -1,26 +1,21 @@
 //! The server, on its own thread.
 
-use crate::access::{self, Guard};
+use crate::access::{self, Guard, Service};
 use crate::viewer::ShownRun;
 use crate::{FoxgloveError, FoxgloveOptions, PageOrigin};
 use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
-use std::thread::JoinHandle;
-use tokio::sync::oneshot;
+use trundle_app::listening::is_shared;
 use trundle_app::operator::{Operator, OperatorLink};
 use trundle_app::{AppError, RunSetup};
-use trundle_runtime::real_time::ThreadPlacement;
-
-/// Niceness of the server's thread above that of the robot's threads. Source: ours.
-const SERVER_NICENESS: i32 = 10;
+use trundle_server::{EndNotice, ServerThread};
 
 /// A run in Foxglove. A drop ends the thread and all connections.
 #[derive(Debug)]
 pub struct FoxgloveServer {
     address: SocketAddr,
     is_shared: bool,
-    end: Option<oneshot::Sender<()>>,
-    thread: Option<JoinHandle<()>>,
+    _thread: ServerThread,
 }
 
 impl FoxgloveServer {
@@ -33,19 +28,12 @@ impl FoxgloveServer {
         let listener =
             bound.map_err(|problem| FoxgloveError::Address { address: options.address, problem })?;
         let address = listener.local_addr()?;
-        listener.set_nonblocking(true)?;
-        let is_shared = options.is_shared();
-        let guard = Arc::new(Guard::new(is_shared, options.origins));
-        let run = Arc::new(ShownRun::new(options.name, operator));
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-        let (end, ended) = oneshot::channel();
-        let work = move || {
-            // If the system refuses the niceness, the run is shown without it.
-            _ = ThreadPlacement { nice: SERVER_NICENESS, ..ThreadPlacement::default() }.take();
-            runtime.block_on(serve(listener, guard, run, ended));
-        };
-        let thread = std::thread::Builder::new().name("foxglove".to_owned()).spawn(work)?;
-        Ok(Self { address, is_shared, end: Some(end), thread: Some(thread) })
+        let is_shared = is_shared(address);
+        let guard = Guard::new(is_shared, options.origins);
+        let run = ShownRun::new(options.name, operator);
+        let service = Arc::new(Service { guard, run, end: EndNotice::default() });
+        let _thread = ServerThread::start("foxglove", listener, |listener| access::serve(listener, service))?;
+        Ok(Self { address, is_shared, _thread })
     }
 
     /// Serves a run of a setup, if an address is given.
@@ -81,21 +69,5 @@ impl FoxgloveServer {
             }
         };
         format!("Foxglove, to view only: ws://{}{warning}", self.address)
-    }
-}
-
-impl Drop for FoxgloveServer {
-    fn drop(&mut self) {
-        drop(self.end.take());
-        if self.thread.take().is_some_and(|thread| thread.join().is_err()) {
-            tracing::error!("the thread of the server for Foxglove panicked");
-        }
-    }
-}
-
-async fn serve(listener: TcpListener, guard: Arc<Guard>, run: Arc<ShownRun>, ended: oneshot::Receiver<()>) {
-    match tokio::net::TcpListener::from_std(listener) {
-        Ok(listener) => access::serve(listener, guard, run, ended).await,
-        Err(error) => tracing::error!("the run cannot be shown in Foxglove: {error}"),
     }
 }

@@ -1,12 +1,12 @@
 //! Permissions to drive and to view: two random tokens.
 
 use crate::LiveError;
-use crate::start_file::open_regular;
 use std::fmt::Write as _;
 use std::fs::OpenOptions;
-use std::io::{ErrorKind, Read, Write};
+use std::io::Write;
 use std::path::Path;
 use subtle::{Choice, ConstantTimeEq};
+use trundle_app::BoundedFile;
 
 /// Permissions of a viewer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,15 +44,9 @@ impl Tokens {
     /// When the file cannot be read or written, or holds no tokens.
     pub fn of_file(file: &Path) -> Result<Self, LiveError> {
         let broken = |problem: String| LiveError::TokenFile { file: file.to_owned(), problem };
-        match open_regular(file, "a file of two lines") {
-            Ok(open) => {
-                let mut text = String::new();
-                open.take(MAX_TOKEN_FILE_BYTES)
-                    .read_to_string(&mut text)
-                    .map_err(|error| broken(error.to_string()))?;
-                Self::parse(&text).map_err(broken)
-            }
-            Err(error) if error.kind() == ErrorKind::NotFound => {
+        match (BoundedFile { path: file, folder: None, max_bytes: MAX_TOKEN_FILE_BYTES }).read() {
+            Ok(bytes) => Self::parse(&String::from_utf8_lossy(&bytes)).map_err(broken),
+            Err(error) if error.is_missing() => {
                 let tokens = Self::random()?;
                 let text = format!("drive {}\nview {}\n", tokens.drive, tokens.view);
                 create_private(file)
@@ -60,7 +54,7 @@ impl Tokens {
                     .map_err(|error| broken(error.to_string()))?;
                 Ok(tokens)
             }
-            Err(error) => Err(broken(error.to_string())),
+            Err(error) => Err(broken(format!("it {error}; expected a file of two lines"))),
         }
     }
 

@@ -20,12 +20,6 @@ pub struct LiveAddress {
 impl LiveAddress {
     /// The text for the default: loopback, port 8642, or a free port if it is in use.
     pub const DEFAULT: &'static str = "loopback";
-
-    /// Whether other machines can reach the page.
-    #[must_use]
-    pub fn is_shared(&self) -> bool {
-        !self.socket.ip().is_loopback()
-    }
 }
 
 impl Default for LiveAddress {
@@ -57,6 +51,7 @@ impl fmt::Display for LiveAddress {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trundle_app::listening::is_shared;
 
     #[test]
     fn an_address_is_read_and_loopback_is_not_shared() {
@@ -64,8 +59,7 @@ mod tests {
         assert_eq!(read("loopback").unwrap(), LiveAddress::default());
         assert_eq!(read("9000").unwrap().socket.to_string(), "127.0.0.1:9000");
         assert_eq!(read("0.0.0.0").unwrap().socket.to_string(), "0.0.0.0:8642");
-        assert!(read("0.0.0.0:8642").unwrap().is_shared() && read("192.168.1.4:80").unwrap().is_shared());
-        assert!(!read("[::1]:80").unwrap().is_shared() && !LiveAddress::default().is_shared());
+        assert!(!is_shared(LiveAddress::default().socket));
         for wrong in ["", "recording.mcap", "70000", "robot.local:80", "1.2.3:80"] {
             assert!(read(wrong).unwrap_err().contains("expected IP:PORT"), "{wrong}");
         }

@@ -47,8 +47,7 @@ mod with_tls {
 
     use super::PageCertificate;
     use crate::LiveError;
-    use crate::start_file::open_regular;
-    use std::io::{self, Read};
+    use std::io;
     use std::path::Path;
     use std::sync::Arc;
     use tokio::net::TcpStream;
@@ -59,6 +58,7 @@ mod with_tls {
     use tokio_rustls::rustls::server::ParsedCertificate;
     use tokio_rustls::rustls::{Error, ServerConfig};
     use tokio_rustls::server::TlsStream;
+    use trundle_app::BoundedFile;
     use webpki::EndEntityCert;
 
     /// Largest file of a certificate or a key that is read \[bytes\]: a chain of ten certificates has about 20 kB. Source: ours.
@@ -144,18 +144,9 @@ mod with_tls {
         )))
     }
 
-    fn read(file: &Path) -> Result<Vec<u8>, LiveError> {
-        let mut bytes = Vec::new();
-        let open = open_regular(file, "a PEM file")
-            .and_then(|open| open.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes));
-        open.map_err(|problem| broken(file, problem.to_string()))?;
-        if bytes.len() as u64 > MAX_FILE_BYTES {
-            return Err(broken(
-                file,
-                format!("it has more than {MAX_FILE_BYTES} bytes, expected a PEM file"),
-            ));
-        }
-        Ok(bytes)
+    fn read(path: &Path) -> Result<Vec<u8>, LiveError> {
+        let read = BoundedFile { path, folder: None, max_bytes: MAX_FILE_BYTES }.read();
+        read.map_err(|problem| broken(path, format!("it {problem}; expected a PEM file")))
     }
 
     fn certificates(text: &[u8]) -> Result<Vec<CertificateDer<'static>>, String> {

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `access` | tokens of 128 bits: one for driving, one for viewing |
 //! | `certificate` | encryption of the page (feature `tls`) |
-//! | `http` | the page's files, the checks of Host and Origin, limits of connections |
+//! | `http` | the page's files, the checks of Host and Origin, requests within a bounded time |
 //! | `viewer` | one browser: data sent to it, and allowed requests |
 //! | `wire` | the messages |
 //! | `steering` | who holds the wheel; from a request to commands of the robot |
@@ -28,10 +28,10 @@ mod error;
 mod history;
 mod http;
 mod options;
+mod origin;
 mod page_state;
 mod run_facts;
 mod server;
-mod start_file;
 mod steering;
 mod viewer;
 mod viewer_list;

@@ -7,8 +7,9 @@ use crate::viewer_list::ViewerList;
 use crate::wire::MapTiles;
 use crate::{LiveOptions, PageCertificate, Tokens};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use tokio::sync::watch;
+use trundle_app::listening::is_shared;
 use trundle_app::operator::Operator;
+use trundle_server::EndNotice;
 
 /// State that all viewers of a page share. One thread serves them; no lock is held while the thread waits.
 #[derive(Debug)]
@@ -27,8 +28,8 @@ pub struct PageState {
     pub facts: RunFacts,
     /// Sends commands.
     pub steering: RunSteering,
-    /// Whether the program is about to end.
-    end: watch::Sender<bool>,
+    /// Informs the viewers of the end of the program.
+    pub end: EndNotice,
     viewer_list: Mutex<ViewerList>,
     tiles: Mutex<MapTiles>,
     history: Mutex<History>,
@@ -42,25 +43,14 @@ impl PageState {
             operator,
             tokens: options.tokens,
             is_steered: options.is_steered,
-            is_shared: options.address.is_shared(),
+            is_shared: is_shared(options.address.socket),
             certificate: options.certificate,
             facts,
-            end: watch::Sender::new(false),
+            end: EndNotice::default(),
             viewer_list: Mutex::default(),
             tiles: Mutex::default(),
             history: Mutex::default(),
         }
-    }
-
-    /// Informs all viewers that the program is about to end.
-    pub fn end(&self) {
-        self.end.send_replace(true);
-    }
-
-    /// Waits until the program is about to end.
-    pub async fn ended(&self) {
-        // The sender lives as long as this state.
-        _ = self.end.subscribe().wait_for(|is_over| *is_over).await;
     }
 
     /// The viewers.

@@ -19,22 +19,17 @@ pub struct ViewerList {
 }
 
 impl ViewerList {
-    /// Adds a viewer; returns its number. `None` if the number of viewers is at its limit.
-    pub fn enter(&mut self) -> Option<ViewerId> {
+    /// Adds a viewer; returns its number. `None` if the number of viewers is at its limit. A viewer without a name is named by its number.
+    pub fn enter(&mut self, name: &str) -> Option<ViewerId> {
         if self.names.len() >= MAX_VIEWERS {
             return None;
         }
         self.last += 1;
-        self.names.insert(self.last, format!("viewer {}", self.last));
-        Some(self.last)
-    }
-
-    /// Sets the name of a viewer.
-    pub fn rename(&mut self, id: ViewerId, name: &str) {
         let clean: String = name.chars().filter(|c| !c.is_control()).take(MAX_NAME_CHARS).collect();
-        if !clean.trim().is_empty() {
-            self.names.insert(id, clean.trim().to_owned());
-        }
+        let clean = clean.trim();
+        let name = if clean.is_empty() { format!("viewer {}", self.last) } else { clean.to_owned() };
+        self.names.insert(self.last, name);
+        Some(self.last)
     }
 
     /// Removes a viewer. Returns whether the viewer was in control.
@@ -93,8 +88,7 @@ mod tests {
     #[test]
     fn one_holds_the_wheel_until_it_leaves_or_another_takes_it() {
         let mut viewer_list = ViewerList::default();
-        let (anna, bert) = (viewer_list.enter().unwrap(), viewer_list.enter().unwrap());
-        viewer_list.rename(anna, " Anna\u{7} ");
+        let (anna, bert) = (viewer_list.enter(" Anna\u{7} ").unwrap(), viewer_list.enter(" ").unwrap());
         assert_eq!(viewer_list.require(anna), Ok(()));
         assert_eq!(viewer_list.require(bert), Err("Anna".to_owned()));
         viewer_list.take(bert);
@@ -106,7 +100,7 @@ mod tests {
     #[test]
     fn viewers_are_limited() {
         let mut viewer_list = ViewerList::default();
-        let entered = std::iter::from_fn(|| viewer_list.enter()).take(1000).count();
+        let entered = std::iter::from_fn(|| viewer_list.enter("guest")).take(1000).count();
         assert_eq!(entered, MAX_VIEWERS);
     }
 }

@@ -19,8 +19,8 @@ pub const EDGES: [&str; 5] = ["trundle-sim", "trundle-io", "trundle-drivers", "t
 /// Crates that may read TOML or command lines.
 const SETTINGS_CRATES: [&str; 6] =
     ["trundle-runtime", "trundle-app", "trundle-cli", "trundle-io", "trundle-fuzz", "xtask"];
-/// Crates that speak HTTP.
-const HTTP_CRATES: [&str; 2] = ["trundle-live", "trundle-foxglove"];
+/// Crates that serve connections: two speak HTTP, one accepts connections for both.
+const HTTP_CRATES: [&str; 3] = ["trundle-live", "trundle-foxglove", "trundle-server"];
 /// Packages with HTTP.
 const HTTP_PACKAGES: [&str; 5] = ["axum", "hyper", "hyper-util", "tokio", "tokio-tungstenite"];
 
@@ -60,7 +60,7 @@ fn check_package(tree: &Tree, package: &Package) -> Vec<Finding> {
             }
             if HTTP_PACKAGES.contains(&dependency.as_str()) && !HTTP_CRATES.contains(&name.as_str()) {
                 let message = format!(
-                    "{name} must not depend on {dependency}: only trundle-live and trundle-foxglove speak HTTP"
+                    "{name} must not depend on {dependency}: only trundle-live, trundle-foxglove and trundle-server serve connections"
                 );
                 findings.push(Finding::error(&path, line, message));
             }
@@ -85,6 +85,7 @@ fn is_known(name: &str) -> bool {
             "trundle-app",
             "trundle-experiments",
             "trundle-ros2",
+            "trundle-server",
             "trundle-live",
             "trundle-fleet",
             "trundle-foxglove",
@@ -129,9 +130,12 @@ fn may_know(from: &str, to: &str) -> bool {
                 || edges.contains(&to)
                 || ["trundle-runtime", "trundle-app"].contains(&to)
         }
-        "trundle-live" => base || ["trundle-planning", "trundle-runtime", "trundle-app"].contains(&to),
+        "trundle-server" => to == "trundle-runtime",
+        "trundle-live" => {
+            base || ["trundle-planning", "trundle-runtime", "trundle-app", "trundle-server"].contains(&to)
+        }
         "trundle-fleet" => base || ["trundle-runtime", "trundle-app", "trundle-viz"].contains(&to),
-        "trundle-foxglove" => base || ["trundle-runtime", "trundle-app"].contains(&to),
+        "trundle-foxglove" => base || ["trundle-runtime", "trundle-app", "trundle-server"].contains(&to),
         "trundle" => !["trundle", "trundle-cli"].contains(&to),
         "trundle-cli" | "trundle-fuzz" => to == "trundle",
         "trundle-python" => ["trundle", "trundle-cli"].contains(&to),
@@ -193,6 +197,9 @@ mod tests {
         assert_eq!(messages("trundle-app", "axum.workspace = true").len(), 1);
         assert!(messages("trundle-live", "axum.workspace = true\ntrundle-app.workspace = true").is_empty());
         assert_eq!(messages("trundle-live", "trundle-sim.workspace = true").len(), 1);
+        assert!(messages("trundle-live", "trundle-server.workspace = true").is_empty());
+        assert!(messages("trundle-server", "tokio.workspace = true").is_empty());
+        assert_eq!(messages("trundle-server", "trundle-app.workspace = true").len(), 1);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The text of an address to listen on.
+//! An address to listen on: its text, and who reaches it.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 
@@ -19,6 +19,12 @@ pub fn read_address(text: &str, default_port: u16) -> Result<SocketAddr, String>
     })
 }
 
+/// Whether other machines can reach a server at this address.
+#[must_use]
+pub fn is_shared(address: SocketAddr) -> bool {
+    !address.ip().to_canonical().is_loopback()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -31,6 +37,17 @@ mod tests {
         assert_eq!(read("[::1]:81").unwrap(), "[::1]:81");
         for wrong in ["", "recording.mcap", "70000", "robot.local:80", "1.2.3:80"] {
             assert!(read(wrong).unwrap_err().contains("expected IP:PORT, as 127.0.0.1:80"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn only_loopback_is_not_shared() {
+        let is_shared = |text: &str| is_shared(read_address(text, 80).unwrap());
+        for own in ["9000", "127.0.0.1", "127.9.9.9", "[::1]:80", "[::ffff:127.0.0.1]:80"] {
+            assert!(!is_shared(own), "{own}");
+        }
+        for shared in ["0.0.0.0", "192.168.1.4:80", "[::]:80", "[fe80::1]:80", "[::ffff:192.168.1.4]:80"] {
+            assert!(is_shared(shared), "{shared}");
         }
     }
 }

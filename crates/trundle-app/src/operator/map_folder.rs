@@ -1,8 +1,6 @@
 //! Maps of a folder that an operator may load.
 
-mod bounded_file;
-
-use bounded_file::BoundedFile;
+use crate::{BoundedFile, BoundedFileError};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -139,10 +137,12 @@ impl MapFolder {
 
     /// The bytes of a file of the folder; `what` it is, for the refusal.
     fn read_file(&self, what: &str, path: &Path, max_bytes: u64) -> Result<Vec<u8>, String> {
-        let read = BoundedFile { path, folder: &self.folder, max_bytes }.read();
-        read.map_err(|problem| {
+        BoundedFile { path, folder: Some(&self.folder), max_bytes }.read().map_err(|problem| {
             tracing::warn!("{}: {problem}", path.display());
-            format!("{what} {problem}")
+            match problem {
+                BoundedFileError::Outside => format!("{what} is missing or outside the folder of maps"),
+                problem => format!("{what} {problem}"),
+            }
         })
     }
 }

@@ -3,7 +3,6 @@
 use super::page_origin::{PageOrigin, is_allowed};
 use crate::protocol::chosen_subprotocol;
 use std::sync::Arc;
-use std::time::Duration;
 use tokio::net::TcpStream;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio_tungstenite::tungstenite::handshake::server::{ErrorResponse, Request, Response};
@@ -14,8 +13,6 @@ use trundle_app::listening::{is_own_name, name_of_host};
 
 /// Maximum number of simultaneous viewers. Source: ours, as many as the live page has.
 const MAX_VIEWERS: usize = 24;
-/// Longest wait for the request of a connection. Source: ours.
-const REQUEST_TIMEOUT: Duration = Duration::from_secs(5);
 /// Largest message of a viewer \[bytes\]: subscriptions to all topics are 1 kB. Source: ours.
 const MAX_MESSAGE_BYTES: usize = 64 * 1024;
 
@@ -40,11 +37,8 @@ impl Guard {
         Self { is_shared, origins, slots: Arc::new(Semaphore::new(MAX_VIEWERS)) }
     }
 
-    /// Reads the request of a connection within a bounded time; `None` if it was refused. The refusal has been sent.
+    /// Reads the request of a connection; `None` if it was refused. The refusal has been sent.
     pub async fn admit(&self, stream: TcpStream) -> Option<Admitted> {
-        if let Err(error) = stream.set_nodelay(true) {
-            tracing::debug!("foxglove: {error}");
-        }
         let mut slot = None;
         #[expect(clippy::result_large_err, reason = "the type of the callback is given")]
         let check = |request: &Request, mut response: Response| {
@@ -58,14 +52,12 @@ impl Guard {
         let limits = WebSocketConfig::default()
             .max_message_size(Some(MAX_MESSAGE_BYTES))
             .max_frame_size(Some(MAX_MESSAGE_BYTES));
-        let accepted = accept_hdr_async_with_config(stream, check, Some(limits));
-        match tokio::time::timeout(REQUEST_TIMEOUT, accepted).await {
-            Ok(Ok(socket)) => slot.map(|slot| Admitted { socket, slot }),
-            Ok(Err(error)) => {
+        match accept_hdr_async_with_config(stream, check, Some(limits)).await {
+            Ok(socket) => slot.map(|slot| Admitted { socket, slot }),
+            Err(error) => {
                 tracing::debug!("foxglove: a connection was refused: {error}");
                 None
             }
-            Err(_) => None,
         }
     }
 

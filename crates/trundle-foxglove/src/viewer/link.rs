@@ -7,13 +7,13 @@ use futures_util::{SinkExt, StreamExt};
 use std::convert::Infallible;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tokio::net::TcpStream;
-use tokio::sync::watch;
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
 use tokio_tungstenite::WebSocketStream;
 use tokio_tungstenite::tungstenite::protocol::CloseFrame;
 use tokio_tungstenite::tungstenite::protocol::frame::coding::CloseCode;
 use tokio_tungstenite::tungstenite::{Bytes, Message};
 use trundle_app::operator::Operator;
+use trundle_server::EndReader;
 
 /// Period of views. Source: ours.
 const VIEW_PERIOD: Duration = Duration::from_millis(50);
@@ -56,11 +56,11 @@ enum End {
 }
 
 /// Serves a viewer until it disconnects or breaks a rule, or the run ends.
-pub async fn serve(mut socket: WebSocketStream<TcpStream>, run: &ShownRun, mut ended: watch::Receiver<bool>) {
+pub async fn serve(mut socket: WebSocketStream<TcpStream>, run: &ShownRun, mut server: EndReader) {
     let mut link = Link::new(&mut socket);
     let end = tokio::select! {
         end = link.talk(run) => end,
-        _ = ended.changed() => End::RunEnded,
+        () = server.ended() => End::RunEnded,
     };
     tracing::debug!("foxglove: a connection ended: {end:?}");
     let (code, reason) = match end {

@@ -4,20 +4,22 @@ mod assets;
 mod connections;
 mod files;
 mod guard;
+mod unencrypted;
 
 pub use connections::serve;
 
 use crate::access::Access;
 use crate::page_state::PageState;
 use crate::viewer;
-use axum::Router;
 use axum::extract::State;
 use axum::extract::ws::{WebSocketUpgrade, rejection::WebSocketUpgradeRejection};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::middleware::from_fn_with_state;
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
+use axum::{Extension, Router};
 use std::sync::Arc;
+use trundle_server::Ticket;
 
 /// Largest message of a viewer \[bytes\]: 50 goals are 4 kB. Source: ours.
 const MAX_MESSAGE_BYTES: usize = 16 * 1024;
@@ -37,6 +39,7 @@ pub fn router(state: Arc<PageState>) -> Router {
 /// A viewer's link.
 async fn open_link(
     State(state): State<Arc<PageState>>,
+    Extension(ticket): Extension<Ticket>,
     headers: HeaderMap,
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Response {
@@ -47,15 +50,10 @@ async fn open_link(
         Ok(upgrade) => upgrade,
         Err(rejection) => return rejection.into_response(),
     };
-    let Some(id) = state.viewer_list().enter() else {
-        return (StatusCode::SERVICE_UNAVAILABLE, "too many viewers: close another page").into_response();
-    };
-    let failed = Arc::clone(&state);
     upgrade
         .max_message_size(MAX_MESSAGE_BYTES)
         .max_frame_size(MAX_MESSAGE_BYTES)
-        .on_failed_upgrade(move |_| _ = failed.viewer_list().leave(id))
-        .on_upgrade(move |socket| viewer::serve(socket, state, id))
+        .on_upgrade(move |socket| viewer::serve(socket, state, ticket))
 }
 
 /// The stop by a plain request, for a page whose connection does not respond.

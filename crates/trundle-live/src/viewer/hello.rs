@@ -15,9 +15,11 @@ const WRONG_TOKEN: u16 = 4401;
 const OTHER_VERSION: u16 = 4406;
 /// Close code of a link without hello. Source: ours, of the range for applications.
 const NO_HELLO: u16 = 4408;
+/// Close code of a viewer beyond the maximum number. Source: the registry of RFC 6455, 1013: try again later.
+const TOO_MANY_VIEWERS: u16 = 1013;
 
-/// Receives the hello and welcomes the viewer; `None` without the permission to view.
-pub async fn receive(socket: &mut WebSocket, state: &PageState, id: ViewerId) -> Option<Access> {
+/// Receives the hello, and adds and welcomes the viewer; `None` without the permission to view.
+pub async fn receive(socket: &mut WebSocket, state: &PageState) -> Option<(ViewerId, Access)> {
     let first = tokio::time::timeout(HELLO_TIMEOUT, socket.recv()).await;
     let Ok(Some(Ok(Message::Text(text)))) = first else {
         return refuse(socket, NO_HELLO, "a hello with the token comes first").await;
@@ -32,7 +34,19 @@ pub async fn receive(socket: &mut WebSocket, state: &PageState, id: ViewerId) ->
     if version != WIRE_VERSION {
         return refuse(socket, OTHER_VERSION, "the page is of another version: load it anew").await;
     }
-    state.viewer_list().rename(id, &name);
+    let entered = state.viewer_list().enter(&name);
+    let Some(id) = entered else {
+        return refuse(socket, TOO_MANY_VIEWERS, "too many viewers: close another page").await;
+    };
+    if !welcome(socket, state, access).await {
+        state.viewer_list().leave(id);
+        return None;
+    }
+    Some((id, access))
+}
+
+/// Sends the facts of the run. Returns whether the viewer received them.
+async fn welcome(socket: &mut WebSocket, state: &PageState, access: Access) -> bool {
     let facts = &state.facts;
     let welcome = Welcome {
         drives: access == Access::Drive && state.is_steered,
@@ -40,12 +54,12 @@ pub async fn receive(socket: &mut WebSocket, state: &PageState, id: ViewerId) ->
         kind: facts.kind,
         ..Welcome::new(facts.title.clone(), &facts.footprint, facts.limits, facts.recording)
     };
-    let text = serde_json::to_string(&Reply::Welcome(Box::new(welcome))).ok()?;
+    let Ok(text) = serde_json::to_string(&Reply::Welcome(Box::new(welcome))) else { return false };
     let sent = tokio::time::timeout(HELLO_TIMEOUT, socket.send(Message::Text(text.into()))).await;
-    matches!(sent, Ok(Ok(()))).then_some(access)
+    matches!(sent, Ok(Ok(())))
 }
 
-async fn refuse(socket: &mut WebSocket, code: u16, reason: &'static str) -> Option<Access> {
+async fn refuse(socket: &mut WebSocket, code: u16, reason: &'static str) -> Option<(ViewerId, Access)> {
     let close = Message::Close(Some(CloseFrame { code, reason: reason.into() }));
     if !matches!(tokio::time::timeout(HELLO_TIMEOUT, socket.send(close)).await, Ok(Ok(()))) {
         tracing::debug!("live page: a viewer went before its refusal");

@@ -7,6 +7,7 @@ mod rate_limit;
 mod requests;
 mod updates;
 
+use crate::access::Access;
 use crate::page_state::PageState;
 use crate::viewer_list::ViewerId;
 use axum::extract::ws::WebSocket;
@@ -15,26 +16,37 @@ use outbox::{Close, Outbox};
 use progress::ViewProgress;
 use std::sync::Arc;
 use tokio::sync::mpsc;
+use trundle_server::Ticket;
 
 /// Maximum number of answers waiting for a viewer. A viewer with more is too slow for its own requests, and its link ends. Source: ours.
 const MAX_WAITING_ANSWERS: usize = 64;
 
-/// Serves a viewer until it disconnects, is silent or breaks a rule.
-pub async fn serve(mut socket: WebSocket, state: Arc<PageState>, id: ViewerId) {
-    if let Some(access) = hello::receive(&mut socket, &state, id).await {
-        let (sink, stream) = socket.split();
-        let (answers, waiting) = mpsc::channel(MAX_WAITING_ANSWERS);
-        let progress = ViewProgress::default();
-        let mut outbox = Outbox::new(sink);
-        let close = tokio::select! {
-            reason = requests::receive(stream, requests::Viewer { state: &state, id, access, progress: &progress, answers }) => Close::Rule(reason),
-            reason = updates::send(&mut outbox, &state, id, &progress, waiting) => Close::Rule(reason),
-            () = state.ended() => Close::ProgramEnded,
-        };
-        tracing::debug!("live page: viewer {id}: {}", close.reason());
-        outbox.close(close).await;
-    }
+/// Serves a viewer until it disconnects, is silent or breaks a rule. Until the hello, the link may have to close in favour of another one.
+pub async fn serve(mut socket: WebSocket, state: Arc<PageState>, ticket: Ticket) {
+    let entered = tokio::select! {
+        entered = hello::receive(&mut socket, &state) => entered,
+        () = ticket.closed() => None,
+    };
+    let Some((id, access)) = entered else { return };
+    // The list of viewers counts the link.
+    ticket.leave();
+    serve_viewer(socket, &state, id, access).await;
     if state.viewer_list().leave(id) {
         state.steering.end_of_hand();
     }
+}
+
+async fn serve_viewer(socket: WebSocket, state: &Arc<PageState>, id: ViewerId, access: Access) {
+    let mut end = state.end.reader();
+    let (sink, stream) = socket.split();
+    let (answers, waiting) = mpsc::channel(MAX_WAITING_ANSWERS);
+    let progress = ViewProgress::default();
+    let mut outbox = Outbox::new(sink);
+    let close = tokio::select! {
+        reason = requests::receive(stream, requests::Viewer { state, id, access, progress: &progress, answers }) => Close::Rule(reason),
+        reason = updates::send(&mut outbox, state, id, &progress, waiting) => Close::Rule(reason),
+        () = end.ended() => Close::ProgramEnded,
+    };
+    tracing::debug!("live page: viewer {id}: {}", close.reason());
+    outbox.close(close).await;
 }

@@ -103,14 +103,12 @@ fn broken_large_and_many_messages_end_the_link_and_not_the_server() {
 }
 
 #[test]
-fn a_thousand_connections_do_not_lock_viewers_out_for_long() {
+fn a_thousand_connections_do_not_lock_viewers_out() {
     let run = LiveRun::start();
     let mut viewer = Browser::enter(&run, Access::Drive, "first");
     let idle: Vec<TcpStream> =
         (0..1000).filter_map(|_| TcpStream::connect(run.page.address()).ok()).collect();
     assert!(idle.len() > 500, "{}", idle.len());
     assert_eq!(viewer.ask(json!({"type": "pause"})), None, "who is in stays in");
-    drop(idle);
-    std::thread::sleep(std::time::Duration::from_millis(300));
     Browser::enter(&run, Access::View, "second");
 }

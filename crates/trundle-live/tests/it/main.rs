@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod browser;
+mod flood;
 mod guard;
 mod half_open;
 mod live_run;

@@ -1,6 +1,7 @@
 //! A page that is encrypted by a given certificate.
 
 use crate::browser::fetch;
+use crate::flood::{half_open, in_time};
 use crate::live_run::LiveRun;
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -12,6 +13,7 @@ use tokio_rustls::rustls::pki_types::pem::PemObject;
 use tokio_rustls::rustls::pki_types::{CertificateDer, ServerName};
 use tokio_rustls::rustls::{ClientConfig, ClientConnection, RootCertStore, StreamOwned};
 use tokio_tungstenite::client_async;
+use tokio_tungstenite::tungstenite::Error;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use trundle_live::{Access, PageCertificate};
 
@@ -51,7 +53,7 @@ fn head(address: SocketAddr, name: &str, request: &str, headers: &[(&str, &str)]
 }
 
 #[test]
-fn an_encrypted_page_names_its_scheme_and_serves_nothing_in_the_clear() {
+fn an_encrypted_page_names_its_scheme_and_is_served() {
     let run = encrypted_run();
     let address = run.page.address();
     let link = run.page.link(Access::Drive).unwrap();
@@ -60,8 +62,39 @@ fn an_encrypted_page_names_its_scheme_and_serves_nothing_in_the_clear() {
     let answer = head(address, "127.0.0.1", "GET /", &[("Host", &host)]);
     assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
     assert!(answer.contains(&format!("connect-src 'self' wss://{host};")), "{answer}");
-    let in_the_clear = std::panic::catch_unwind(|| fetch(address, "GET /", &[("Host", &host)]));
-    assert!(in_the_clear.is_err(), "no HTTP answer without encryption");
+}
+
+#[test]
+fn a_request_without_encryption_is_told_the_encrypted_link_and_nothing_else() {
+    let run = encrypted_run();
+    let address = run.page.address();
+    for request in ["GET /", "GET /page.js", "POST /stop", "\u{1}\u{2}"] {
+        let (head, body) = fetch(address, request, &[("Host", &address.to_string())]);
+        assert!(head.starts_with("HTTP/1.1 400 ") && head.contains("text/plain"), "{request}: {head}");
+        assert!(body.contains("encrypted") && body.contains(&format!("https://{address}/#")), "{body}");
+        assert!(
+            !body.contains(run.token(Access::View)) && !body.contains(run.token(Access::Drive)),
+            "{body}"
+        );
+    }
+}
+
+#[test]
+fn half_open_handshakes_of_one_peer_do_not_hold_up_a_new_viewer() {
+    // The head of a record of 512 bytes, and the first bytes of a hello.
+    let half_of_hello = [0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc, 3, 3];
+    for (count, start) in
+        [(60, &[][..]), (60, &half_of_hello), (500, &[]), (500, &half_of_hello), (60, b"GET / HT")]
+    {
+        let run = encrypted_run();
+        let address = run.page.address();
+        let _silent = half_open(address, count, start);
+        let host = address.to_string();
+        let answer = in_time("GET / by TLS", || head(address, "127.0.0.1", "GET /", &[("Host", &host)]));
+        assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
+        let status = in_time("link by TLS", || open_link(address, &format!("https://{address}")).unwrap());
+        assert_eq!(status, 101);
+    }
 }
 
 #[test]
@@ -79,30 +112,23 @@ fn names_of_the_certificate_are_names_of_the_machine() {
 fn the_link_of_an_encrypted_page_belongs_to_its_own_origin() {
     let run = encrypted_run();
     let address = run.page.address();
-    let open = |origin: &str| {
-        let mut request = format!("wss://{address}/live").into_client_request().unwrap();
-        request.headers_mut().insert("Origin", origin.parse().unwrap());
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
-        runtime.block_on(async {
-            let stream = tokio::net::TcpStream::connect(address).await.unwrap();
-            let name = ServerName::try_from("127.0.0.1").unwrap();
-            let stream = TlsConnector::from(client()).connect(name, stream).await.unwrap();
-            client_async(request, stream).await.map(|(_, response)| response.status().as_u16())
-        })
-    };
-    assert_eq!(open(&format!("https://{address}")).unwrap(), 101);
+    assert_eq!(open_link(address, &format!("https://{address}")).unwrap(), 101);
     for foreign in [format!("http://{address}"), "https://evil.example".to_owned()] {
-        assert!(open(&foreign).is_err(), "{foreign}");
+        assert!(open_link(address, &foreign).is_err(), "{foreign}");
     }
 }
 
-#[test]
-fn a_stranger_who_never_starts_the_encryption_holds_up_nobody() {
-    let run = encrypted_run();
-    let address = run.page.address();
-    let _silent: Vec<TcpStream> = (0..10).map(|_| TcpStream::connect(address).unwrap()).collect();
-    let host = address.to_string();
-    assert!(head(address, "127.0.0.1", "GET /", &[("Host", &host)]).starts_with("HTTP/1.1 200"));
+/// The status of the answer to a page of `origin` that opens a link by TLS.
+fn open_link(address: SocketAddr, origin: &str) -> Result<u16, Error> {
+    let mut request = format!("wss://{address}/live").into_client_request()?;
+    request.headers_mut().insert("Origin", origin.parse().unwrap());
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    runtime.block_on(async {
+        let stream = tokio::net::TcpStream::connect(address).await.unwrap();
+        let name = ServerName::try_from("127.0.0.1").unwrap();
+        let stream = TlsConnector::from(client()).connect(name, stream).await.unwrap();
+        client_async(request, stream).await.map(|(_, response)| response.status().as_u16())
+    })
 }
 
 #[test]
@@ -118,10 +144,13 @@ fn files_that_are_no_certificate_or_no_key_are_named() {
     let absent = refused(&place.path().join("absent.pem"), &key);
     assert!(absent.contains("absent.pem") && absent.contains("No such file"), "{absent}");
     assert!(refused(&key, &key).contains("it has no certificate, expected a PEM file"));
-    assert!(refused(Path::new("/dev/null"), &key).contains("not a regular file"));
+    assert!(refused(Path::new("/dev/null"), &key).contains("is no regular file"));
     assert!(refused(&chain, &chain).contains("it has no key, expected a PEM file"));
     assert!(refused(&file("text", "hello"), &key).contains("it has no certificate"));
-    assert!(refused(&file("large", &"-".repeat(300_000)), &key).contains("more than 262144 bytes"));
+    assert!(
+        refused(&file("large", &"-".repeat(300_000)), &key)
+            .contains("has 300000 bytes, expected at most 262144")
+    );
     let broken = "-----BEGIN CERTIFICATE-----\nAAAA\n-----END CERTIFICATE-----\n";
     assert!(refused(&file("broken", broken), &key).contains("not a certificate of a server"));
     // An Ed25519 key, made by `openssl genpkey`.
