@@ -18,8 +18,8 @@ const NO_HELLO: u16 = 4408;
 /// Close code of a viewer beyond the maximum number. Source: the registry of RFC 6455, 1013: try again later.
 const TOO_MANY_VIEWERS: u16 = 1013;
 
-/// Receives the hello, and adds and welcomes the viewer; `None` without the permission to view.
-pub async fn receive(socket: &mut WebSocket, state: &PageState) -> Option<(ViewerId, Access)> {
+/// Receives the hello: the access of its token, and the viewer's name. `None` without the permission to view.
+pub async fn receive(socket: &mut WebSocket, state: &PageState) -> Option<(Access, String)> {
     let first = tokio::time::timeout(HELLO_TIMEOUT, socket.recv()).await;
     let Ok(Some(Ok(Message::Text(text)))) = first else {
         return refuse(socket, NO_HELLO, "a hello with the token comes first").await;
@@ -34,15 +34,25 @@ pub async fn receive(socket: &mut WebSocket, state: &PageState) -> Option<(Viewe
     if version != WIRE_VERSION {
         return refuse(socket, OTHER_VERSION, "the page is of another version: load it anew").await;
     }
-    let entered = state.viewer_list().enter(&name);
+    Some((access, name))
+}
+
+/// Adds and welcomes a viewer; `None` if there are too many, or this one has gone.
+pub async fn enter(
+    socket: &mut WebSocket,
+    state: &PageState,
+    access: Access,
+    name: &str,
+) -> Option<ViewerId> {
+    let entered = state.viewer_list().enter(name);
     let Some(id) = entered else {
         return refuse(socket, TOO_MANY_VIEWERS, "too many viewers: close another page").await;
     };
-    if !welcome(socket, state, access).await {
-        state.viewer_list().leave(id);
-        return None;
+    if welcome(socket, state, access).await {
+        return Some(id);
     }
-    Some((id, access))
+    state.viewer_list().leave(id);
+    None
 }
 
 /// Sends the facts of the run. Returns whether the viewer received them.
@@ -59,7 +69,7 @@ async fn welcome(socket: &mut WebSocket, state: &PageState, access: Access) -> b
     matches!(sent, Ok(Ok(())))
 }
 
-async fn refuse(socket: &mut WebSocket, code: u16, reason: &'static str) -> Option<(ViewerId, Access)> {
+async fn refuse<T>(socket: &mut WebSocket, code: u16, reason: &'static str) -> Option<T> {
     let close = Message::Close(Some(CloseFrame { code, reason: reason.into() }));
     if !matches!(tokio::time::timeout(HELLO_TIMEOUT, socket.send(close)).await, Ok(Ok(()))) {
         tracing::debug!("live page: a viewer went before its refusal");

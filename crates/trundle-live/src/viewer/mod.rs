@@ -23,13 +23,14 @@ const MAX_WAITING_ANSWERS: usize = 64;
 
 /// Serves a viewer until it disconnects, is silent or breaks a rule. Until the hello, the link may have to close in favour of another one.
 pub async fn serve(mut socket: WebSocket, state: Arc<PageState>, ticket: Ticket) {
-    let entered = tokio::select! {
-        entered = hello::receive(&mut socket, &state) => entered,
+    let hello = tokio::select! {
+        hello = hello::receive(&mut socket, &state) => hello,
         () = ticket.closed() => None,
     };
-    let Some((id, access)) = entered else { return };
-    // The list of viewers counts the link.
+    let Some((access, name)) = hello else { return };
+    // The list of viewers counts the link from now on.
     ticket.leave();
+    let Some(id) = hello::enter(&mut socket, &state, access, &name).await else { return };
     serve_viewer(socket, &state, id, access).await;
     if state.viewer_list().leave(id) {
         state.steering.end_of_hand();

@@ -73,6 +73,21 @@ fn a_page_that_comes_again_after_a_restart_is_welcome_with_its_token() {
 }
 
 #[test]
+fn one_viewer_too_many_is_told_so_and_a_place_that_was_left_is_free() {
+    let run = LiveRun::start();
+    let mut viewers: Vec<_> = (0..24).map(|_| Browser::enter(&run, Access::View, "viewer")).collect();
+    let mut late = Browser::connect(&run, None).unwrap();
+    late.hello(run.token(Access::Drive), "late");
+    assert_eq!(late.wait_for_close(), (1013, "too many viewers: close another page".to_owned()));
+    viewers.pop();
+    let start = Instant::now();
+    while viewers[0].wait_for("state")["viewers"] != 23 {
+        assert!(start.elapsed() < Duration::from_secs(10), "a viewer that went is counted");
+    }
+    Browser::enter(&run, Access::Drive, "late");
+}
+
+#[test]
 fn viewers_hear_that_the_program_ends() {
     let run = LiveRun::start();
     let mut viewer = Browser::enter(&run, Access::View, "viewer");
