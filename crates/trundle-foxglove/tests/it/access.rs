@@ -65,7 +65,6 @@ fn silent_connections_of_one_peer_do_not_lock_a_viewer_out() {
         let start = Instant::now();
         let mut second = Viewer::enter(address);
         second.wait_for("advertise");
-        println!("a viewer beside {count} silent connections: {:?}", start.elapsed());
         assert!(start.elapsed() < MAX_ENTRY, "{count}: {:?}", start.elapsed());
         second.subscribe(1, 1);
         first.subscribe(1, 1);

@@ -31,7 +31,6 @@ pub fn in_time<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
     let elapsed = start.elapsed();
-    println!("{what}: {elapsed:?}");
     assert!(elapsed < MAX_ENTRY, "{what}: {elapsed:?}");
     result
 }
@@ -75,7 +74,6 @@ fn requests_that_come_one_byte_per_second_end_and_hold_up_nobody() {
             !is_over && stream.write_all(b"a").is_ok()
         });
     }
-    println!("slow requests: all closed after {:?}", start.elapsed());
     assert!(start.elapsed() > Duration::from_secs(4), "a slow network is given some seconds");
 }
 
