@@ -2,10 +2,10 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod browser;
-mod flood;
 mod guard;
 mod half_open;
 mod live_run;
+mod many_connections;
 mod steering;
 #[cfg(feature = "tls")]
 mod tls;

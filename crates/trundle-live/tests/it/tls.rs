@@ -1,8 +1,8 @@
 //! A page that is encrypted by a given certificate.
 
 use crate::browser::fetch;
-use crate::flood::{half_open, in_time};
 use crate::live_run::LiveRun;
+use crate::many_connections::{half_open, in_time};
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::path::{Path, PathBuf};
