@@ -20,7 +20,7 @@ mod view_feed;
 mod visual_map_feed;
 
 pub use annotation_edit::AnnotationEdit;
-pub use depth_view::{DepthPicture, DepthView};
+pub use depth_view::{DepthPicture, DepthView, DepthViewpoint};
 pub(crate) use image_feed::ImageFeed;
 pub use link::{Operator, OperatorError, OperatorLink, operator_link};
 pub use map_file::{ZONES_FILE, map_file};

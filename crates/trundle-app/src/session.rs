@@ -64,7 +64,7 @@ impl<'s> RunSession<'s> {
         let messages = RunMessages::default();
         let FrontEnd { progress, mut operator } = front_end;
         if let Some(link) = &mut operator {
-            link.note_image_size([setup.robot.camera.width(), setup.robot.camera.height()]);
+            link.note_camera(&setup.robot.camera);
             link.begin_annotations(robot.annotations(), setup.annotations_file.as_deref());
             link.show_recording(recorder.switch().clone());
         }

@@ -221,7 +221,7 @@ fn run_unrecorded(
     let mut log = RunLog::default();
     let mut finished = None;
     if let Some(link) = &mut watch {
-        link.note_image_size([setup.robot.camera.width(), setup.robot.camera.height()]);
+        link.note_camera(&setup.robot.camera);
     }
     while let Some(event) = RobotBody::next_event(body).map_err(AppError::input)? {
         log.on_event(&event, setup.map_from_world);

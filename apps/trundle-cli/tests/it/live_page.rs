@@ -9,7 +9,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
 /// Version of the messages, as the page has it.
-const WIRE_VERSION: u32 = 4;
+const WIRE_VERSION: u32 = 5;
 
 /// A program with its live page.
 struct LiveProgram {

@@ -12,7 +12,7 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use thiserror::Error;
-use trundle_core::{Invalid, MapAnnotations, RgbdImage, SensorEvent, Stamp};
+use trundle_core::{Invalid, MapAnnotations, PinholeCamera, RgbdImage, SensorEvent, Stamp};
 use trundle_io::EncodedRgbd;
 use trundle_runtime::{OperatorCommand, Robot, StepReport};
 
@@ -229,9 +229,9 @@ impl OperatorLink {
         }
     }
 
-    /// Width and height of the camera's images \[px\].
-    pub fn note_image_size(&mut self, size_px: [usize; 2]) {
-        self.feed.image_size_px = size_px;
+    /// Notes the camera of the images.
+    pub fn note_camera(&mut self, camera: &PinholeCamera) {
+        self.feed.camera = Some(*camera);
     }
 
     /// The zones and places with which a run begins, and the file that keeps their changes.

@@ -1,6 +1,6 @@
 //! View of a run for its front ends.
 
-use super::DepthView;
+use super::{DepthView, DepthViewpoint};
 use nalgebra::Matrix3;
 use std::fmt;
 use std::sync::Arc;
@@ -152,6 +152,8 @@ pub struct PerceptionView {
     pub image: Option<Arc<ImageView>>,
     /// Depth of the image; `None` if unavailable.
     pub depth: Option<Arc<DepthView>>,
+    /// Camera and pose of that depth; `None` if the camera is unknown.
+    pub depth_viewpoint: Option<DepthViewpoint>,
     /// The visual map, at most [`super::VISUAL_MAP_PERIOD_S`] old.
     pub visual_map: Option<Arc<VisualMapView>>,
     /// Features of the last image that was tracked.

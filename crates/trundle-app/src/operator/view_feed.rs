@@ -1,11 +1,12 @@
 //! Makes the views of a run.
 
+use super::DepthViewpoint;
 use super::image_feed::ImageFeed;
 use super::perception_feed::PerceptionFeed;
 use super::run_view::{MapView, MissionView, PerceptionView, PlanView, RunCounts, RunState, RunView};
 use super::visual_map_feed::VisualMapFeed;
 use std::sync::Arc;
-use trundle_core::{Scan, Stamp, Twist2};
+use trundle_core::{PinholeCamera, Scan, Stamp, Twist2};
 use trundle_planning::PlanResult;
 use trundle_runtime::{Robot, Stage, StepReport};
 
@@ -27,8 +28,8 @@ pub(super) struct ViewFeed {
     pub(super) images: ImageFeed,
     visual_map: VisualMapFeed,
     perception: PerceptionFeed,
-    /// Width and height of the camera's images \[px\].
-    pub(super) image_size_px: [usize; 2],
+    /// The camera; `None` without images.
+    pub(super) camera: Option<PinholeCamera>,
 }
 
 impl ViewFeed {
@@ -69,7 +70,8 @@ impl ViewFeed {
         }
         if is_watched {
             if let (Some(track), Some(slam)) = (&report.track, robot.slam()) {
-                self.perception.update(self.image_size_px, track, slam);
+                let size_px = self.camera.map_or([0; 2], |camera| [camera.width(), camera.height()]);
+                self.perception.update(size_px, track, slam);
             }
             self.update_scan(robot);
             self.visual_map.update(stamp, robot.slam(), robot.map_from_visual());
@@ -90,6 +92,7 @@ impl ViewFeed {
             perception: PerceptionView {
                 movers: robot.moving_obstacles().to_vec(),
                 station: robot.station().map(|station| station.pose),
+                depth_viewpoint: is_watched.then(|| self.depth_viewpoint(robot)).flatten(),
                 ..self.perception.view(&self.images, &self.visual_map)
             },
             counts: counts(robot),
@@ -121,6 +124,12 @@ impl ViewFeed {
         }
     }
 
+    /// Viewpoint of the newest depth image, by the newest estimate.
+    fn depth_viewpoint(&self, robot: &Robot) -> Option<DepthViewpoint> {
+        let (camera, depth) = (self.camera?, self.images.depth()?);
+        Some(DepthViewpoint { camera, map_from_camera: robot.map_from_camera_at(depth.stamp) })
+    }
+
     fn update_scan(&mut self, robot: &Robot) {
         let stamp = |scan: &Scan| scan.stamp();
         if robot.scan().map(stamp) != self.scan.as_deref().map(stamp) {
@@ -147,5 +156,35 @@ fn counts(robot: &Robot) -> RunCounts {
         control: runs(Stage::Control),
         dropped_images: robot.dropped_images().len() as u64,
         stages: Stage::ALL.iter().map(|stage| (stage.name(), robot.times().total(*stage))).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::{DepthImage, Pose3, SensorEvent, WheelTicks};
+    use trundle_runtime::{OperatorCommand, PoseGuess, RobotConfig};
+
+    #[test]
+    fn a_depth_image_has_the_pose_at_its_stamp_unless_the_pose_is_unknown() {
+        let config = RobotConfig::default();
+        let (camera, base_from_camera) = (config.camera, config.mount.base_from_camera());
+        let mut robot = Robot::new(config).unwrap();
+        let mut feed = ViewFeed { camera: Some(camera), ..ViewFeed::default() };
+        let stamp = |step: u16| Stamp::from_nanos(20_000_000 * i64::from(step));
+        let drive = |step: u16| {
+            let ticks = WheelTicks { stamp: stamp(step), left: 30 * step, right: 60 * step };
+            robot.step(&SensorEvent::Wheels(ticks));
+            robot.estimate().pose
+        };
+        let poses: Vec<_> = (0..20).map(drive).collect();
+        assert_eq!(feed.depth_viewpoint(&robot), None, "no depth image");
+        feed.images.note_depth(stamp(15), &DepthImage::filled(camera.width(), camera.height(), 1.0));
+        let found = feed.depth_viewpoint(&robot).unwrap().map_from_camera.unwrap();
+        let off = |step: usize| (Pose3::from_pose2(poses[step]) * base_from_camera).inverse() * found;
+        assert!(off(15).log().norm() < 1e-6 && off(19).log().norm() > 0.01, "{found:?}");
+        let guess = PoseGuess { pose: poses[19], position_sigma: 9.0, heading_sigma: 0.2 };
+        robot.execute(OperatorCommand::SetPose(guess)).unwrap();
+        assert_eq!(feed.depth_viewpoint(&robot).unwrap().map_from_camera, None);
     }
 }

@@ -1,12 +1,12 @@
 //! Views of a tracked sequence for a front end that watches.
 
 use crate::operator::{
-    Activity, ImageFeed, MapView, OperatorLink, PerceptionFeed, RunCounts, RunView, SeriesView,
-    VisualMapFeed, on_floor,
+    Activity, DepthViewpoint, ImageFeed, MapView, OperatorLink, PerceptionFeed, PerceptionView, RunCounts,
+    RunView, SeriesView, VisualMapFeed, on_floor,
 };
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use trundle_core::{Hypotenuse, Pose2, Pose3, RgbdImage, Scan, Stamp, Twist2};
+use trundle_core::{Hypotenuse, PinholeCamera, Pose2, Pose3, RgbdImage, Scan, Stamp, Twist2};
 use trundle_mapping::{GridMapper, MapperConfig};
 use trundle_runtime::{LevelMap, Stage, StageTimes};
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
@@ -17,7 +17,10 @@ const MAP_PERIOD: Duration = Duration::from_secs(1);
 /// Makes views of a tracked sequence. Without a watching front end, a view contains only pose and counts.
 pub(super) struct SequenceFeed {
     link: OperatorLink,
+    camera: PinholeCamera,
     images: ImageFeed,
+    /// Pose of the camera at the newest depth image of the feed; `None` for an image that was not located.
+    depth_pose: Option<Pose3>,
     perception: PerceptionFeed,
     visual_map: VisualMapFeed,
     map: MapFeed,
@@ -36,11 +39,13 @@ pub(super) struct Tracker<'t> {
 }
 
 impl SequenceFeed {
-    /// Views for `link`; the map is drawn by `config`.
-    pub(super) fn new(link: OperatorLink, config: MapperConfig) -> Self {
+    /// Views for `link` of the images of `camera`; the map is drawn by `config`.
+    pub(super) fn new(link: OperatorLink, camera: PinholeCamera, config: MapperConfig) -> Self {
         Self {
             link,
+            camera,
             images: ImageFeed::default(),
+            depth_pose: None,
             perception: PerceptionFeed::default(),
             visual_map: VisualMapFeed::default(),
             map: MapFeed { config, mapper: None, count: 0, view: None, copied: None },
@@ -65,7 +70,7 @@ impl SequenceFeed {
         self.perception.note_loop(report, pose);
         if self.link.is_watched() {
             self.images.note_jpeg(report.stamp, jpeg);
-            self.images.note_depth(report.stamp, image.depth());
+            self.note_depth(image, report);
             let size_px = [image.color().width(), image.color().height()];
             self.perception.update(size_px, report, tracker.slam);
             self.visual_map.update(report.stamp, Some(tracker.slam), Some(Pose3::identity()));
@@ -77,6 +82,19 @@ impl SequenceFeed {
         self.link.publish_view(view);
         let (unit, total) = ("images", Some(total));
         self.link.operator().show_series(SeriesView { unit, done, total, ..SeriesView::default() });
+    }
+
+    fn note_depth(&mut self, image: &RgbdImage, report: &TrackReport) {
+        self.images.note_depth(report.stamp, image.depth());
+        if self.images.depth().is_some_and(|depth| depth.stamp == report.stamp) {
+            self.depth_pose = report.tracking.is_located().then_some(report.visual_from_camera);
+        }
+    }
+
+    fn perception(&self) -> PerceptionView {
+        let viewpoint = DepthViewpoint { camera: self.camera, map_from_camera: self.depth_pose };
+        let depth_viewpoint = self.images.depth().map(|_| viewpoint);
+        PerceptionView { depth_viewpoint, ..self.perception.view(&self.images, &self.visual_map) }
     }
 
     fn view(&mut self, report: &TrackReport, pose: Pose2, tracker: &Tracker<'_>) -> RunView {
@@ -94,7 +112,7 @@ impl SequenceFeed {
             scan_pose: self.scan.as_ref().map(|(base, _)| *base),
             scan: self.scan.as_ref().map(|(_, scan)| Arc::clone(scan)),
             map: self.map.view.clone(),
-            perception: self.perception.view(&self.images, &self.visual_map),
+            perception: self.perception(),
             counts: RunCounts {
                 slam: self.tracked,
                 mapping: tracker.map.scan_count() as u64,

@@ -99,7 +99,8 @@ pub fn track_sequence(
 ) -> Result<SequenceRun, AppError> {
     let mut run = SequenceRun::new(request, input)?;
     let mut recorder = SequenceRecorder::begin(request.record, folder, input.camera.model.camera)?;
-    let mut feed = watch.map(|link| SequenceFeed::new(link, input.robot.mapping.clone()));
+    let mut feed =
+        watch.map(|link| SequenceFeed::new(link, input.camera.model.camera, input.robot.mapping.clone()));
     let odometry = OdometryPrior::new(input);
     let frames = request.frames.map_or(input.len(), |frames| input.len().min(frames));
     progress.begin(Some(frames));

@@ -1,13 +1,16 @@
 // The camera's last image, its depth and its features.
 
 import { element } from "./panel";
-import type { ByteMessage } from "./wire";
+import { DEPTH_UNIT_M, type ByteMessage, type DepthMessage } from "./wire";
 
 let isDecoding = false;
 
+/** What became of an image; a busy page draws the next one. */
+export type ImageEnd = "drawn" | "busy" | "broken";
+
 /** Draws an image. A browser keeps the pictures of an <img> for minutes, a canvas keeps the last one. */
-export async function drawImage(jpeg: Uint8Array<ArrayBuffer>): Promise<void> {
-  if (isDecoding) return;
+export async function drawImage(jpeg: Uint8Array<ArrayBuffer>): Promise<ImageEnd> {
+  if (isDecoding) return "busy";
   isDecoding = true;
   try {
     const image = await createImageBitmap(new Blob([jpeg], { type: "image/jpeg" }));
@@ -17,8 +20,10 @@ export async function drawImage(jpeg: Uint8Array<ArrayBuffer>): Promise<void> {
     canvas.getContext("bitmaprenderer")!.transferFromImageBitmap(image);
     canvas.hidden = false;
     element("camera-none").hidden = true;
+    return "drawn";
   } catch {
     // A broken image is not shown; the next one comes soon.
+    return "broken";
   } finally {
     isDecoding = false;
   }
@@ -45,12 +50,10 @@ export function drawFeatures(message: Extract<ByteMessage, { kind: "features" }>
   });
 }
 
-/** Unit of a depth that is sent [m]. */
-const DEPTH_UNIT_M = 0.04;
 /** Depth of the last colour [m]. */
 const FAR_M = 6;
 
-export function drawDepth(message: Extract<ByteMessage, { kind: "depth" }>): void {
+export function drawDepth(message: DepthMessage): void {
   const canvas = element<HTMLCanvasElement>("camera-depth");
   const height = Math.floor(message.pixels.length / Math.max(1, message.width));
   if (canvas.hidden || height === 0) return;

@@ -1,7 +1,7 @@
 // The live page: what the robot sees, and how it is steered.
 
 import { Annotations } from "./annotations";
-import { drawDepth, drawFeatures, drawImage } from "./camera";
+import { drawDepth, drawFeatures, drawImage, type ImageEnd } from "./camera";
 import { Link, type LinkState } from "./link";
 import { MapView, type Layers } from "./map_view";
 import { Moments } from "./moments";
@@ -16,7 +16,7 @@ import { SpaceView } from "./space_view";
 import { startTheme, toggleTheme } from "./theme";
 import { Timeline } from "./timeline";
 import { MapTools, type Tool } from "./tools";
-import type { ByteMessage, Pose, Reply, RobotState, Setting, Welcome } from "./wire";
+import type { ByteMessage, DepthMessage, Pose, Reply, RobotState, Setting, Welcome } from "./wire";
 
 startTheme(() => {
   map.recolor();
@@ -38,6 +38,10 @@ const timeline = new Timeline(moments, (time, moment) => {
 const PAN_PX = 80;
 let welcome: Welcome | null = null;
 let state: RobotState | null = null;
+/** Whether the run has a depth camera whose images can be drawn in space. */
+let hasDepthCamera = false;
+/** What becomes of the last image. */
+let imageEnd = Promise.resolve<ImageEnd>("broken");
 /** What a refusal beside the map refers to. */
 let refused: { text: string; at: Pose } | null = null;
 
@@ -57,6 +61,7 @@ const settings = new Settings(async (message) => (await link.ask(message)).refus
 const recording = new RecordingSwitch((on) => void request({ type: "record", on }));
 const series = new SeriesCard(() => {
   map.forgetRun();
+  space.cloud?.clear();
   beginMoments(new Float32Array());
 });
 const tools = new MapTools(canvas, map, () => state?.pose[2] ?? 0, annotations.tool, {
@@ -66,9 +71,10 @@ const tools = new MapTools(canvas, map, () => state?.pose[2] ?? 0, annotations.t
 });
 const teleop = new Teleop(element("stick"), element("knob"), (v, omega) => link.send({ type: "drive", v, omega }));
 
-/** For tests in a browser, and for the curious: the map, the last minutes, and a place of the window where a wall is drawn. */
-const inspected: { map: MapView; moments: Moments; wallPixel: typeof wallPixel; settings: Setting[] } = {
+/** For tests in a browser, and for the curious: the map, the view of space, the last minutes, and a place of the window where a wall is drawn. */
+const inspected: { map: MapView; space: SpaceView; moments: Moments; wallPixel: typeof wallPixel; settings: Setting[] } = {
   map,
+  space,
   moments,
   wallPixel,
   settings: [],
@@ -93,6 +99,8 @@ function onReply(reply: Reply): void {
       showKind(reply);
       element("log").replaceChildren();
       recording.begin(reply.recording);
+      space.cloud?.clear();
+      offerCloud(false);
       sendCamera();
       sendVisualMap();
       void offerMaps();
@@ -119,6 +127,9 @@ function onReply(reply: Reply): void {
       break;
     case "series":
       series.show(reply);
+      break;
+    case "depth_camera":
+      offerCloud(true);
       break;
     case "states":
       addToLog(reply.states, (time) => timeline.look(time));
@@ -155,10 +166,11 @@ function onBytes(message: ByteMessage): void {
       drawFeatures(message);
       break;
     case "image":
-      void drawImage(message.jpeg);
+      imageEnd = drawImage(message.jpeg);
       break;
     case "depth":
       drawDepth(message);
+      if (isCollecting()) void imageEnd.then((end) => addToCloud(message, end));
       break;
   }
 }
@@ -262,6 +274,7 @@ function connectButtons(): void {
   press("zoom-out", () => zoom(1 / 1.4));
   press("space-toggle", toggleSpace);
   element("space-toggle").hidden = !space.isPossible;
+  press("cloud-toggle", toggleCloud);
   press("help-open", () => toggle("help", "help-open"));
   press("help-close", () => toggle("help", "help-open"));
   press("camera-toggle", toggleCamera);
@@ -324,6 +337,7 @@ function onKey(event: KeyboardEvent): void {
     f: toggleFollow,
     "0": () => map.fit(),
     "3": toggleSpace,
+    c: toggleCloud,
     "+": () => zoom(1.4),
     "=": () => zoom(1.4),
     "-": () => zoom(1 / 1.4),
@@ -351,6 +365,32 @@ function toggleSpace(): void {
   space.show(!space.isShown);
   element("space-toggle").setAttribute("aria-pressed", String(space.isShown));
   sendVisualMap();
+  offerCloud(hasDepthCamera);
+  if (space.cloud) sendCamera();
+}
+
+/** Offers the cloud beside the view of space, if the run has a depth camera. */
+function offerCloud(isPossible: boolean): void {
+  hasDepthCamera = isPossible;
+  element("cloud-toggle").hidden = !(isPossible && space.isShown);
+}
+
+/** Collects the points of depth images, or forgets them. */
+function toggleCloud(): void {
+  if (element("cloud-toggle").hidden) return;
+  space.collect(!space.cloud);
+  element("cloud-toggle").setAttribute("aria-pressed", String(space.cloud !== null));
+  sendCamera();
+}
+
+function isCollecting(): boolean {
+  return space.isShown && space.cloud !== null && !document.hidden;
+}
+
+/** Adds a depth image to the cloud, in the colours of its image; a busy page leaves both out. */
+function addToCloud(message: DepthMessage, end: ImageEnd): void {
+  if (end === "busy") return;
+  space.cloud?.add(message, end === "drawn" ? element<HTMLCanvasElement>("camera") : null);
 }
 
 function selectTool(tool: Tool): void {
@@ -409,10 +449,11 @@ function toggleCamera(): void {
   sendCamera();
 }
 
-/** Images are sent only while they can be seen, depth only while it is chosen. */
+/** Images are sent only while they can be seen, depth only while it is chosen; the cloud needs both. */
 function sendCamera(): void {
   const isShown = element("camera-card").offsetParent !== null && !element("camera-body").hidden && !document.hidden;
-  link.send({ type: "camera", on: isShown, depth: isShown && !element("camera-depth").hidden });
+  const isDepthShown = isShown && !element("camera-depth").hidden;
+  link.send({ type: "camera", on: isShown || isCollecting(), depth: isDepthShown || isCollecting() });
 }
 
 /** Shows depth or colour. */

@@ -1,6 +1,8 @@
 // The map, the landmarks and the robot in space, by WebGL: drag turns the view, the wheel zooms.
 
+import { Cloud } from "./cloud";
 import type { MapView } from "./map_view";
+import { build, HEIGHT_M, RAINBOW } from "./shader";
 import type { Chunk } from "./tiles";
 
 type Matrix = Float32Array;
@@ -10,13 +12,12 @@ in vec3 at; in vec2 uv; uniform mat4 view; uniform float size; out float height;
 void main() { gl_Position = view * vec4(at, 1.0); gl_PointSize = clamp(size / gl_Position.w, 1.5, 9.0); height = at.z; place = uv; }`;
 const FRAGMENT = `#version 300 es
 precision mediump float;
-in float height; in vec2 place; uniform int mode; uniform vec4 color; uniform sampler2D picture; out vec4 pixel;
-vec3 rainbow(float h) { return clamp(vec3(1.6 * h - 0.2, 1.0 - abs(2.0 * h - 0.8), 1.1 - 1.6 * h), 0.12, 1.0); }
+in float height; in vec2 place; uniform int mode; uniform vec4 color; uniform sampler2D picture; out vec4 pixel;${RAINBOW}
 void main() {
   if (mode == 1) { pixel = texture(picture, place); if (pixel.a < 0.1) discard; }
   else if (mode == 2) {
     if (length(gl_PointCoord - 0.5) > 0.5) discard;
-    pixel = vec4(rainbow(clamp(height / 2.2, 0.0, 1.0)), 1.0);
+    pixel = vec4(rainbow(clamp(height / ${HEIGHT_M}, 0.0, 1.0)), 1.0);
   } else pixel = color;
 }`;
 
@@ -28,6 +29,8 @@ export class SpaceView {
   private readonly program: WebGLProgram | null = null;
   private readonly buffer: WebGLBuffer | null = null;
   private readonly textures = new Map<Chunk, { texture: WebGLTexture; version: number }>();
+  /** The points of depth images; null while they are not collected. */
+  cloud: Cloud | null = null;
   private isOn = false;
   private turn = -2.2;
   private tilt = 0.85;
@@ -40,7 +43,7 @@ export class SpaceView {
   ) {
     this.gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: false });
     if (!this.gl) return;
-    this.program = build(this.gl);
+    this.program = build(this.gl, VERTEX, FRAGMENT);
     this.buffer = this.gl.createBuffer();
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
@@ -72,6 +75,12 @@ export class SpaceView {
     this.isOn = isOn && this.isPossible;
     this.canvas.hidden = !this.isOn;
     if (this.isOn) requestAnimationFrame(() => this.frame());
+  }
+
+  /** Begins a cloud, or forgets it with its points. */
+  collect(isOn: boolean): void {
+    this.cloud?.free();
+    this.cloud = isOn && this.gl ? new Cloud(this.gl) : null;
   }
 
   zoom(factor: number): void {
@@ -108,7 +117,8 @@ export class SpaceView {
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     gl.useProgram(program);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-    gl.uniformMatrix4fv(gl.getUniformLocation(program, "view"), false, this.view(scene.robot ?? [0, 0, 0]));
+    const view = this.view(scene.robot ?? [0, 0, 0]);
+    gl.uniformMatrix4fv(gl.getUniformLocation(program, "view"), false, view);
     gl.uniform1f(gl.getUniformLocation(program, "size"), 0.022 * this.canvas.height);
     for (const { chunk, corner, side } of this.map.tiles.pictures()) {
       this.bind(gl, chunk);
@@ -130,6 +140,7 @@ export class SpaceView {
     this.mesh(gl, program, 0, gl.POINTS, flat(scene.scan, 0.12), 3);
     this.mesh(gl, program, 2, gl.POINTS, scene.landmarks, 3);
     if (scene.robot) this.drawRobot(gl, program, scene.robot, scene.reach, color);
+    this.cloud?.draw(view, this.canvas.height);
   }
 
   /** A cylinder with an arrow on its top. */
@@ -221,19 +232,4 @@ export class SpaceView {
     ];
     return Float32Array.from({ length: 16 }, (_, i) => rows[i % 4]![Math.floor(i / 4)]!);
   }
-}
-
-function build(gl: WebGL2RenderingContext): WebGLProgram | null {
-  const program = gl.createProgram();
-  for (const [kind, source] of [
-    [gl.VERTEX_SHADER, VERTEX],
-    [gl.FRAGMENT_SHADER, FRAGMENT],
-  ] as const) {
-    const shader = gl.createShader(kind)!;
-    gl.shaderSource(shader, source);
-    gl.compileShader(shader);
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  return gl.getProgramParameter(program, gl.LINK_STATUS) ? program : null;
 }

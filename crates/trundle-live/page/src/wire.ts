@@ -1,6 +1,6 @@
 // The messages between page and server. The server's side is crates/trundle-live/src/wire.
 
-export const WIRE_VERSION = 4;
+export const WIRE_VERSION = 5;
 
 export type Pose = [x: number, y: number, theta: number];
 export type Point = [x: number, y: number];
@@ -119,6 +119,7 @@ export type Reply =
   | { type: "settings"; settings: Setting[] }
   | ({ type: "recording" } & Recording)
   | ({ type: "series" } & Series)
+  | { type: "depth_camera" }
   | { type: "states"; states: StateEntry[] };
 
 export const TILE_CELLS = 64;
@@ -132,6 +133,21 @@ export interface TileMessage {
   tiles: { column: number; row: number; cells: Uint8Array }[];
 }
 
+/** Unit of a depth that is sent [m]. */
+export const DEPTH_UNIT_M = 0.04;
+/** Numbers of a viewpoint: focal lengths and principal point [px], k1, k2, p1, p2, k3, and three rows of map_from_camera. */
+const VIEWPOINT_NUMBERS = 21;
+
+export interface DepthMessage {
+  kind: "depth";
+  width: number;
+  /** Number of maps that an operator has replaced. */
+  mapNumber: number;
+  /** Camera of the picture and its pose; null where the pose is unknown. */
+  viewpoint: Float32Array | null;
+  pixels: Uint8Array;
+}
+
 export type ByteMessage =
   | TileMessage
   | { kind: "scan"; pose: Pose; points: Float32Array }
@@ -140,7 +156,7 @@ export type ByteMessage =
   | { kind: "visual"; keyframes: Float32Array; landmarks: Float32Array }
   | { kind: "features"; width: number; height: number; spots: Float32Array; tracked: boolean[] }
   | { kind: "image"; jpeg: Uint8Array<ArrayBuffer> }
-  | { kind: "depth"; width: number; pixels: Uint8Array };
+  | DepthMessage;
 
 /** Reads a message of bytes; null for a kind that this page does not know. */
 export function readBytes(buffer: ArrayBuffer): ByteMessage | null {
@@ -161,10 +177,21 @@ export function readBytes(buffer: ArrayBuffer): ByteMessage | null {
     case 7:
       return readFeatures(view);
     case 8:
-      return { kind: "depth", width: view.getUint16(2, true), pixels: new Uint8Array(buffer, 4) };
+      return readDepth(view, buffer);
     default:
       return null;
   }
+}
+
+function readDepth(view: DataView, buffer: ArrayBuffer): DepthMessage {
+  const isKnown = (view.getUint8(1) & 1) === 1;
+  return {
+    kind: "depth",
+    width: view.getUint16(2, true),
+    mapNumber: view.getUint32(4, true),
+    viewpoint: isKnown ? new Float32Array(buffer, 8, VIEWPOINT_NUMBERS) : null,
+    pixels: new Uint8Array(buffer, 8 + 4 * VIEWPOINT_NUMBERS),
+  };
 }
 
 /** The way-points of the planner, then the points of its curve. */

@@ -80,10 +80,11 @@ struct SentNotes {
     settings: Option<RunSettings>,
     series: Option<Arc<SeriesView>>,
     recording: Option<RecordingText>,
+    depth_camera: bool,
 }
 
 impl SentNotes {
-    /// Zones, places, settings, series and recording that changed.
+    /// Zones, places, settings, depth camera, series and recording that changed.
     fn changed(&mut self, view: &RunView, state: &PageState) -> Vec<Reply> {
         let annotations = state.operator.annotations();
         let is_new = self.annotations.as_ref().is_none_or(|known| !Arc::ptr_eq(known, &annotations));
@@ -95,7 +96,14 @@ impl SentNotes {
         let text = |setting: &RunSetting| SettingText::of(*setting, limits);
         let settings = changed.map(|all| Reply::Settings { settings: all.iter().map(text).collect() });
         let others = self.series_note(state).into_iter().chain(self.recording_note(state));
-        zones.into_iter().chain(settings).chain(others).collect()
+        zones.into_iter().chain(settings).chain(self.depth_camera_note(view)).chain(others).collect()
+    }
+
+    /// Sent once, after the first depth image of a known camera.
+    fn depth_camera_note(&mut self, view: &RunView) -> Option<Reply> {
+        let is_new = !self.depth_camera && view.perception.depth_viewpoint.is_some();
+        self.depth_camera |= is_new;
+        is_new.then_some(Reply::DepthCamera)
     }
 
     fn recording_note(&mut self, state: &PageState) -> Option<Reply> {
@@ -239,7 +247,8 @@ impl Updates {
     /// The depth is only sent together with its image.
     fn depth_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
         let depth = view.perception.depth.as_ref().filter(|_| self.image_batch == self.batch)?;
-        depth.picture().map(depth_message)
+        let map_number = view.map.as_ref().map_or(0, |map| map.number);
+        Some(depth_message(depth.picture()?, view.perception.depth_viewpoint, map_number))
     }
 
     fn features_part(&mut self, view: &RunView) -> Option<Vec<u8>> {

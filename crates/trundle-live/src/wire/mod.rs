@@ -28,7 +28,7 @@ pub use state::{StateMessage, WheelText};
 pub use visual_map::visual_map_message;
 
 /// Version of the messages. A page of another version reloads itself. Source: ours.
-pub const WIRE_VERSION: u32 = 4;
+pub const WIRE_VERSION: u32 = 5;
 
 /// First byte of a message of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -44,6 +44,8 @@ pub enum Reply {
     Series(SeriesText),
     /// State of the recording.
     Recording(RecordingText),
+    /// The run has a depth camera whose images can be drawn in space.
+    DepthCamera,
     /// States of the robot since some time ago.
     States {
         /// States in the order of time.

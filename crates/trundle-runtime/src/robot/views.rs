@@ -9,7 +9,9 @@ use crate::{
 };
 use std::sync::Arc;
 use trundle_control::MotionHold;
-use trundle_core::{Battery, MapAnnotations, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, Scan};
+use trundle_core::{
+    Battery, MapAnnotations, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, Scan, Stamp,
+};
 use trundle_estimation::StationEstimate;
 use trundle_planning::{MovingObstacle, PlanResult};
 use trundle_slam::RgbdSlam;
@@ -84,6 +86,15 @@ impl Robot {
     pub fn scan_pose(&self) -> Option<Pose2> {
         let carried = self.latest.scan_with_odometry()?;
         Some(self.localizer.estimate().pose * carried.odom_now.inverse() * carried.odom_at_scan)
+    }
+
+    /// `map_from_camera` at a stamp of the last seconds, by the newest estimate. `None` while the pose is unknown, and without odometry at
+    /// the stamp.
+    pub fn map_from_camera_at(&self, stamp: Stamp) -> Option<Pose3> {
+        let newest = self.latest.odometry.filter(|odometry| self.is_pose_known(odometry.stamp))?;
+        let odom_from_base = self.localizer.odometry_at(stamp).ok()?.pose;
+        let base = self.localizer.estimate().pose * newest.pose.inverse() * odom_from_base;
+        Some(Pose3::from_pose2(base) * self.base_from_camera)
     }
 
     /// Number of images skipped because the camera was frozen.
