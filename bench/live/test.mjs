@@ -735,6 +735,53 @@ await check("landmarks and keyframes", async () => {
   return `${landmarks} landmarks, ${drawn ? "in space too" : "no WebGL here"}`;
 });
 
+/** Points of the cloud: their number, and the parts within the room, on its floor, and of those above the floor, at a wall of the map. */
+const cloudOf = (page) =>
+  page.evaluate(() => {
+    const { map, space } = window.trundle;
+    if (!space.cloud?.count) return { count: 0 };
+    const { count, points } = space.cloud;
+    const { min, max } = map.tiles.knownBounds();
+    // Depth is seen 2 m farther than the map is drawn.
+    const isWithin = (p, axis) => p[axis] > min[axis] - 2 && p[axis] < max[axis] + 2;
+    const around = [-0.1, -0.05, 0, 0.05, 0.1].flatMap((dx) => [-0.1, -0.05, 0, 0.05, 0.1].map((dy) => [dx, dy]));
+    const [all, found] = [{ room: count, floor: count, wall: 0 }, { room: 0, floor: 0, wall: 0 }];
+    for (let i = 0; i < count; i++) {
+      const p = points.subarray(4 * i, 4 * i + 3);
+      if (isWithin(p, 0) && isWithin(p, 1) && p[2] > -0.3 && p[2] < 2.8) found.room += 1;
+      if (Math.abs(p[2]) < 0.1) found.floor += 1;
+      if (p[2] < 0.2 || p[2] > 0.6) continue;
+      all.wall += 1;
+      if (around.some(([dx, dy]) => map.tiles.isWall([p[0] + dx, p[1] + dy]))) found.wall += 1;
+    }
+    return { count, room: found.room / all.room, floor: found.floor / all.floor, wall: found.wall / Math.max(1, all.wall) };
+  });
+
+await check("a cloud of the depth images in space: its points lie in the room, and depth is sent only while it is on", async () => {
+  assert.equal(await page.locator("#cloud-toggle").isVisible(), false, "the cloud is offered beside the map");
+  await page.keyboard.press("3");
+  if (!(await page.locator("#space").isVisible())) return "no WebGL here";
+  const before = main.depths;
+  await page.locator("#cloud-toggle").click();
+  assert.equal(await page.locator("#cloud-toggle").getAttribute("aria-pressed"), "true");
+  let cloud;
+  await until("1000 points", async () => (cloud = await cloudOf(page)).count > 1000, DRIVE_S);
+  await page.waitForTimeout(1500);
+  await picture("cloud");
+  const parts = ["room", "floor", "wall"].map((part) => `${part} ${(100 * cloud[part]).toFixed(0)} %`).join(", ");
+  assert(cloud.room > 0.95 && cloud.floor > 0.02 && cloud.wall > 0.5, `${cloud.count} points: ${parts}`);
+  await page.keyboard.press("c");
+  assert.equal((await cloudOf(page)).count, 0);
+  // What was under way when the cloud was switched off has come by then.
+  await page.waitForTimeout(3000);
+  const messages = main.depths;
+  await page.waitForTimeout(3000);
+  assert.equal(main.depths, messages, "depth is sent without a cloud");
+  await page.keyboard.press("3");
+  assert.equal(await page.locator("#cloud-toggle").isVisible(), false);
+  return `${cloud.count} points: ${parts}; ${messages - before} depth images`;
+});
+
 /** Rate of the states of a viewer [1/s], and how old they are beside those of this page [s]: the median and the most. */
 async function lateness(viewer) {
   const [before, start, lags] = [viewer.states.length, performance.now(), []];
