@@ -6,8 +6,12 @@
 mod boxes;
 #[path = "../tests/it/building.rs"]
 mod building;
+#[path = "carmen_bench/relations.rs"]
+#[allow(dead_code, reason = "the benchmark of logs uses more of it")]
+mod relations;
 
 use building::Building;
+use relations::{Agreement, relations};
 use trundle_core::Stamp;
 use trundle_mapping::{ParticleConfig, ParticleMapper, ScanUpdate, propagate_trajectory};
 
@@ -31,10 +35,21 @@ fn main() {
                 stamps.push((scan.stamp(), *odom));
             }
             mapper.finish();
-            let found: Vec<(Stamp, _)> = propagate_trajectory(&mapper.trajectory(), &stamps);
             let origin = drive.truth[0].inverse();
-            let errors: Vec<f64> =
-                found.iter().zip(&drive.truth).map(|(f, t)| f.1.distance(&(origin * *t))).collect();
+            let truth: Vec<_> =
+                drive.scans.iter().zip(&drive.truth).map(|(s, t)| (s.stamp(), origin * *t)).collect();
+            let known = relations(&truth);
+            let agreement = |mapper: &ParticleMapper| {
+                let found: Vec<(Stamp, _)> = propagate_trajectory(&mapper.trajectory(), &stamps);
+                Agreement::of(&known, &truth, &found, None).unwrap()
+            };
+            println!("{name} seed {seed} before: {}", agreement(&mapper));
+            let start = std::time::Instant::now();
+            mapper.polish();
+            let took = start.elapsed().as_secs_f64() * 1e3 / mapper.trajectory().len() as f64;
+            println!("{name} seed {seed} after:  {}; {took:.1} ms a scan", agreement(&mapper));
+            let found: Vec<(Stamp, _)> = propagate_trajectory(&mapper.trajectory(), &stamps);
+            let errors: Vec<f64> = found.iter().zip(&truth).map(|(f, t)| f.1.distance(&t.1)).collect();
             let worst = errors.iter().copied().fold(0.0, f64::max);
             let mean = errors.iter().sum::<f64>() / errors.len() as f64;
             let by_odometry = drive.odom.last().unwrap().distance(&(origin * *drive.truth.last().unwrap()));

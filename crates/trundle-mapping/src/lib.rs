@@ -32,6 +32,7 @@ mod loop_closing;
 pub mod map_edit;
 mod particle_config;
 mod persist;
+mod polish;
 mod pose_graph;
 mod rbpf;
 mod scan_log;

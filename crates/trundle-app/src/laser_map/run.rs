@@ -83,7 +83,7 @@ fn is_stopped(done: usize, input: &LogInput) -> bool {
 /// thousand times the usual memory and time. Source: ours.
 const MAX_SCANS_OF_WRONG_UNIT: usize = 10;
 
-/// Maps the scans of the log.
+/// Maps the scans of the log, and polishes trajectory and map.
 fn map(
     input: &mut LogInput,
     mapper: &mut ParticleMapper,
@@ -101,7 +101,7 @@ fn map(
         done.counts.without_overlap < MAX_SCANS_OF_WRONG_UNIT
             || !*is_unit_wrong.get_or_insert_with(|| range_unit_hint(&input.log).is_some())
     })?;
-    mapper.finish();
+    mapper.polish();
     progress.end();
     done.poses = mapper.whole_trajectory();
     done.megabytes = mapper.bytes() as f64 / 1e6;

@@ -28,6 +28,8 @@ fn option<T: std::str::FromStr>(name: &str) -> Option<T> {
 
 struct Run {
     trajectory: Vec<(Stamp, Pose2)>,
+    before: Vec<(Stamp, Pose2)>,
+    polish_ms: f64,
     scans_ms: Vec<f64>,
     resamplings: usize,
     degenerate: usize,
@@ -64,10 +66,14 @@ fn run(log: &log::Log, config: &ParticleConfig, seed: u64) -> Run {
         }
     }
     mapper.finish();
+    let before = propagate_trajectory(&mapper.trajectory(), &odometry);
+    let start = processor_ms();
+    mapper.polish();
+    let polish_ms = (processor_ms() - start) / scans_ms.len() as f64;
     let trajectory = propagate_trajectory(&mapper.trajectory(), &odometry);
     let megabytes = mapper.bytes() as f64 / 1e6;
     let grid = mapper.grid().clone();
-    Run { trajectory, scans_ms, resamplings, degenerate, bends, megabytes, grid }
+    Run { trajectory, before, polish_ms, scans_ms, resamplings, degenerate, bends, megabytes, grid }
 }
 
 fn main() {
@@ -105,6 +111,11 @@ fn main() {
         );
         let end = run.trajectory.last().map_or(Pose2::IDENTITY, |(_, pose)| *pose);
         print!("ends at {:.2} {:.2} m {:.1} deg; ", end.x, end.y, end.theta.to_degrees());
+        let before = Agreement::of(&relations, reference.as_deref().unwrap_or_default(), &run.before, but);
+        if let Some(before) = before {
+            println!("\n before: {before}");
+        }
+        print!(" polished in {:.2} ms a scan: ", run.polish_ms);
         let agreement =
             Agreement::of(&relations, reference.as_deref().unwrap_or_default(), &run.trajectory, but);
         println!("{}", agreement.as_ref().map_or(String::new(), ToString::to_string));

@@ -69,6 +69,16 @@ impl ScanHistory {
         }
     }
 
+    /// Replaces the measured steps and loops by those between better `poses`. A later correction bends these.
+    pub(crate) fn replace_measurements(&mut self, poses: &[Pose2]) {
+        self.measured.clear();
+        self.measure(poses);
+        for constraint in &mut self.loops {
+            let (from, to) = constraint.poses();
+            constraint.from_to = poses[from].inverse() * poses[to];
+        }
+    }
+
     /// The steps and the loops as constraints between the poses of a trajectory.
     pub(crate) fn constraints(&self, poses: &[Pose2]) -> Vec<Constraint> {
         let step = |k: usize| Constraint {

@@ -4,6 +4,7 @@ use crate::filter_models::FilterModels;
 use crate::loop_closing::crowded_places::crowded;
 use crate::loop_closing::loop_closer::LoopCloser;
 use crate::loop_closing::scan_history::{ScanHistory, every_second, number_after};
+use crate::polish::polished;
 use crate::rbpf::map_redraw::MapRedraw;
 use crate::rbpf::particle_set::ParticleSet;
 use crate::scan_match::scan_points::ScanPoints;
@@ -74,6 +75,18 @@ impl LoopCorrector {
     /// Completes a redraw in progress.
     pub(crate) fn finish(&mut self, models: &FilterModels, set: &mut ParticleSet) {
         self.advance_redraw(models, set, usize::MAX);
+    }
+
+    /// Polishes the trajectory of the best particle, and redraws the map. Returns the largest displacement of a pose, m; `None` if the poses
+    /// are kept.
+    pub(crate) fn polish(&mut self, models: &FilterModels, set: &mut ParticleSet) -> Option<f64> {
+        self.finish(models, set);
+        let poses: Vec<Pose2> = set.trajectory().into_iter().map(|(_, pose)| pose).collect();
+        let polished = polished(&models.config, &self.history, &poses)?;
+        let farthest = polished.iter().zip(&poses).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
+        self.history.replace_measurements(&polished);
+        self.redraw = Some(MapRedraw { poses: polished, farthest, ..MapRedraw::default() });
+        self.advance_redraw(models, set, usize::MAX).1
     }
 
     /// Redraws scans at their corrected poses for about `budget` cells. The particles take the new map when all scans are drawn.

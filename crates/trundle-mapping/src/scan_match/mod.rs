@@ -17,4 +17,4 @@ pub use global_search::Lost;
 pub use kernel_density::{MatchedMap, ScanMatch, ScanMatchConfig, ScanMatcher};
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

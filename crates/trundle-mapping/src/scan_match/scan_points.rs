@@ -36,6 +36,17 @@ pub(crate) struct ScanPoint {
     pub(crate) information: f32,
 }
 
+/// A hit of a scan.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ScanHit {
+    /// Number of its beam.
+    pub(crate) beam: usize,
+    /// End point, base frame, m.
+    pub(crate) end: Vector2,
+    /// One sigma of its range, m.
+    pub(crate) sigma: f64,
+}
+
 /// Number of points of a vector group.
 pub(crate) const LANES: usize = 8;
 
@@ -174,6 +185,18 @@ impl ScanPoints {
         }
     }
 
+    /// All hits, in the order of their beams.
+    pub(crate) fn hits(&self, config: &ParticleConfig) -> Vec<ScanHit> {
+        let cells_to_m = config.map.resolution;
+        let (x, y) = self.rays.origin;
+        let origin = Vector2::new(f64::from(x), f64::from(y)) * cells_to_m;
+        let sigma = |end: &Vector2, own: f64| range_sigma(config, (end - origin).norm(), own);
+        self.hits
+            .iter()
+            .map(|(beam, end, own)| ScanHit { beam: *beam, end: *end, sigma: sigma(end, *own) })
+            .collect()
+    }
+
     /// Removes all points.
     pub(crate) fn clear(&mut self) {
         self.rays.clear();
@@ -199,9 +222,7 @@ impl ScanPoints {
         for k in kept {
             let hit = self.hits[k].1;
             let range = (hit - origin).norm();
-            let own = self.hits[k].2;
-            let usual = config.range_noise + config.range_noise_growth * range * range;
-            let range_sigma = if own > 0.0 { own } else { usual };
+            let range_sigma = range_sigma(config, range, self.hits[k].2);
             // A cell's obstacle is known to about a fifth of the cell.
             let sigma = range_sigma.hypotenuse(0.3 * config.map.resolution);
             let normal = self.normal(k, sigma).map_or((0.0, 0.0), |n| (n.x as f32, n.y as f32));
@@ -255,6 +276,11 @@ impl ScanPoints {
             (across.x * across.x * xx + 2.0 * across.x * across.y * xy + across.y * across.y * yy) / count;
         (off.sqrt() <= MAX_LINE_RESIDUAL_SIGMAS * sigma).then_some(across)
     }
+}
+
+/// One sigma of a range (m): the scan's `own` if it is positive, else that of the settings.
+fn range_sigma(config: &ParticleConfig, range: f64, own: f64) -> f64 {
+    if own > 0.0 { own } else { config.range_noise + config.range_noise_growth * range * range }
 }
 
 /// Fraction of a Gaussian of `sigma` cells within half a cell of its mean, relative to that for a sigma of half a cell. A hit that may

@@ -4,4 +4,4 @@ mod cloud_match;
 mod held_directions;
 mod likelihood;
 mod motion_prior;
-mod room;
+pub(crate) mod room;

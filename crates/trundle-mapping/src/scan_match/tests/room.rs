@@ -39,13 +39,13 @@ fn cast(from: Vector2, angle: f64) -> f64 {
 }
 
 /// Scan of 360 beams around the base at `pose`.
-pub(super) fn scan(pose: Pose2) -> Scan {
+pub(crate) fn scan(pose: Pose2) -> Scan {
     let beam = |k: usize| Beam::Hit { range: cast(pose.position(), pose.theta + k as f64 * TAU / 360.0) };
     Scan::new(Stamp::default(), Vector2::zeros(), 0.0, TAU / 360.0, (0..360).map(beam).collect()).unwrap()
 }
 
 /// Models of the default settings.
-pub(super) fn models() -> FilterModels {
+pub(crate) fn models() -> FilterModels {
     FilterModels::new(ParticleConfig::default()).unwrap()
 }
 
