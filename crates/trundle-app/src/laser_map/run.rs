@@ -101,7 +101,10 @@ fn map(
         done.counts.without_overlap < MAX_SCANS_OF_WRONG_UNIT
             || !*is_unit_wrong.get_or_insert_with(|| range_unit_hint(&input.log).is_some())
     })?;
-    mapper.polish();
+    if is_unit_wrong != Some(true) {
+        mapper.polish();
+    }
+    mapper.finish();
     progress.end();
     done.poses = mapper.whole_trajectory();
     done.megabytes = mapper.bytes() as f64 / 1e6;

@@ -28,7 +28,9 @@ fn option<T: std::str::FromStr>(name: &str) -> Option<T> {
 
 struct Run {
     trajectory: Vec<(Stamp, Pose2)>,
-    before: Vec<(Stamp, Pose2)>,
+    /// The filter's trajectory, before the polish.
+    filter: Vec<(Stamp, Pose2)>,
+    /// Time of the polish, per processed scan.
     polish_ms: f64,
     scans_ms: Vec<f64>,
     resamplings: usize,
@@ -66,14 +68,14 @@ fn run(log: &log::Log, config: &ParticleConfig, seed: u64) -> Run {
         }
     }
     mapper.finish();
-    let before = propagate_trajectory(&mapper.trajectory(), &odometry);
+    let filter = propagate_trajectory(&mapper.trajectory(), &odometry);
     let start = processor_ms();
     mapper.polish();
     let polish_ms = (processor_ms() - start) / scans_ms.len() as f64;
     let trajectory = propagate_trajectory(&mapper.trajectory(), &odometry);
     let megabytes = mapper.bytes() as f64 / 1e6;
     let grid = mapper.grid().clone();
-    Run { trajectory, before, polish_ms, scans_ms, resamplings, degenerate, bends, megabytes, grid }
+    Run { trajectory, filter, polish_ms, scans_ms, resamplings, degenerate, bends, megabytes, grid }
 }
 
 fn main() {
@@ -111,15 +113,19 @@ fn main() {
         );
         let end = run.trajectory.last().map_or(Pose2::IDENTITY, |(_, pose)| *pose);
         print!("ends at {:.2} {:.2} m {:.1} deg; ", end.x, end.y, end.theta.to_degrees());
-        let before = Agreement::of(&relations, reference.as_deref().unwrap_or_default(), &run.before, but);
-        if let Some(before) = before {
-            println!("\n before: {before}");
+        let agreement = |trajectory: &[(Stamp, Pose2)]| {
+            Agreement::of(&relations, reference.as_deref().unwrap_or_default(), trajectory, but)
+        };
+        if let Some(filter) = agreement(&run.filter) {
+            print!("filter {filter}; ");
         }
-        print!(" polished in {:.2} ms a scan: ", run.polish_ms);
-        let agreement =
-            Agreement::of(&relations, reference.as_deref().unwrap_or_default(), &run.trajectory, but);
+        print!("polished in {:.2} ms a scan; ", run.polish_ms);
+        let agreement = agreement(&run.trajectory);
         println!("{}", agreement.as_ref().map_or(String::new(), ToString::to_string));
-        means.extend(agreement.map(|agreement| (agreement.mean(), agreement.open_loops(), seed)));
+        means.extend(
+            agreement
+                .map(|agreement| (agreement.mean(), agreement.open_loops(), seed, agreement.mean_turn())),
+        );
         if let Some(pgm) = option::<String>("--pgm") {
             std::fs::write(&pgm, picture(&run.grid)).unwrap();
         }
@@ -130,9 +136,10 @@ fn main() {
     }
     if let Some(worst) = means.iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
         let mean = means.iter().map(|m| m.0).sum::<f64>() / means.len() as f64;
+        let turn = means.iter().map(|m| m.3).sum::<f64>() / means.len() as f64;
         let closed = means.iter().filter(|m| m.1 == 0).count();
         println!(
-            "{} seeds: mean error of all relations {mean:.3} m on average, {:.3} m in the worst (seed {}); all loops closed in {closed}",
+            "{} seeds: mean error of all relations {mean:.3} m on average, {:.3} m in the worst (seed {}), turns {turn:.2} deg; all loops closed in {closed}",
             means.len(),
             worst.0,
             worst.2

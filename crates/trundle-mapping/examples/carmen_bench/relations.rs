@@ -96,7 +96,7 @@ pub struct Agreement {
     /// Errors of relations that do not touch the excluded poses.
     rest: Option<Vec<Error>>,
     /// RMSE of the positions, m.
-    pub absolute: f64,
+    absolute: f64,
 }
 
 /// Loops that are farther off than this are not closed, m: more than the reference itself is. Source: ours.
@@ -141,7 +141,7 @@ impl Agreement {
     }
 
     /// Mean error of the turns of all relations, deg.
-    pub fn turn(&self) -> f64 {
+    pub fn mean_turn(&self) -> f64 {
         self.all.iter().map(|e| e.1).sum::<f64>() / self.all.len().max(1) as f64
     }
 

@@ -223,5 +223,22 @@ fn loops_of_corridors_are_closed_whatever_the_seed() {
         let off = mapper.pose().distance(&truth);
         assert!(by_odometry > 5.0, "the odometry alone is {by_odometry} m off");
         assert!(off < 0.3 && bends > 0, "seed {seed}: {off} m off after {bends} bends");
+        let error = |mapper: &ParticleMapper| {
+            let poses = mapper.trajectory();
+            let errors = drive.scans.iter().zip(&drive.truth).filter_map(|(scan, truth)| {
+                let at = poses.binary_search_by_key(&scan.stamp(), |(stamp, _)| *stamp).ok()?;
+                Some(poses[at].1.distance(&(origin * *truth)))
+            });
+            errors.sum::<f64>() / poses.len() as f64
+        };
+        let before = error(&mapper);
+        assert!(mapper.polish().is_some());
+        let after = error(&mapper);
+        assert!(after < 0.5 * before && after < 0.05, "seed {seed}: {before} m, polished {after} m");
+        assert_eq!(
+            mapper.pose(),
+            mapper.trajectory().last().unwrap().1,
+            "all particles continue from the end"
+        );
     }
 }
