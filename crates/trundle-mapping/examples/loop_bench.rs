@@ -77,7 +77,7 @@ fn run(name: &str, drive: &Drive, (seed, particles): (u64, usize), sums: &mut Su
     let (text, filter) = compared(&mapper);
     println!("{name}: {text}; odometry {by_odometry:.1} m off; {slips} slips, {bends} bends");
     let start = Instant::now();
-    mapper.polish();
+    mapper.polish(&|| true);
     let ms = start.elapsed().as_secs_f64() * 1e3 / mapper.trajectory().len() as f64;
     let (text, polished) = compared(&mapper);
     println!("{name} polished: {text}; {ms:.2} ms a scan");

@@ -73,8 +73,26 @@ impl<const N: usize> BlockMatrix<N> {
         matrix
     }
 
+    /// Zeros as by [`BlockMatrix::new`]; `None` if the factor would hold more than `max_blocks` blocks, as with many parallel passes.
+    #[must_use]
+    pub fn new_within(count: usize, pairs: &[(usize, usize)], max_blocks: usize) -> Option<Self> {
+        let mut matrix = Self::default();
+        matrix.arrange(count, pairs);
+        let blocks: usize = matrix.first.iter().enumerate().map(|(row, first)| row - first + 1).sum();
+        (blocks <= max_blocks).then(|| {
+            matrix.allot();
+            matrix
+        })
+    }
+
     /// Shapes this matrix in place for `count` nodes and the linked `pairs`.
     pub(crate) fn shape(&mut self, count: usize, pairs: &[(usize, usize)]) {
+        self.arrange(count, pairs);
+        self.allot();
+    }
+
+    /// Orders the rows, and finds the first column of each.
+    fn arrange(&mut self, count: usize, pairs: &[(usize, usize)]) {
         self.row_of = narrow_order(count, pairs);
         self.first.clear();
         self.first.extend(0..count);
@@ -82,7 +100,6 @@ impl<const N: usize> BlockMatrix<N> {
             let (low, high) = ordered(self.row_of[a], self.row_of[b]);
             self.first[high] = self.first[high].min(low);
         }
-        self.allot();
     }
 
     /// Zeros for `count` nodes each of which may be coupled with each, in place and in their own order.

@@ -102,7 +102,12 @@ fn map(
             || !*is_unit_wrong.get_or_insert_with(|| range_unit_hint(&input.log).is_some())
     })?;
     if is_unit_wrong != Some(true) {
-        mapper.polish();
+        let scans = done.counts.read;
+        let goes_on = || !stop::is_requested(|| format!("{scans} of {scans} scans, before their polish"));
+        match mapper.polish(&goes_on) {
+            Some(farthest) => tracing::info!("the polish moved poses by up to {farthest:.3} m"),
+            None => tracing::info!("the trajectory is that of the filter, without a polish"),
+        }
     }
     mapper.finish();
     progress.end();

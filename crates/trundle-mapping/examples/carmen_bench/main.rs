@@ -70,7 +70,7 @@ fn run(log: &log::Log, config: &ParticleConfig, seed: u64) -> Run {
     mapper.finish();
     let filter = propagate_trajectory(&mapper.trajectory(), &odometry);
     let start = processor_ms();
-    mapper.polish();
+    mapper.polish(&|| true);
     let polish_ms = (processor_ms() - start) / scans_ms.len() as f64;
     let trajectory = propagate_trajectory(&mapper.trajectory(), &odometry);
     let megabytes = mapper.bytes() as f64 / 1e6;

@@ -10,14 +10,15 @@ const NEIGHBOUR_STEPS: [usize; 4] = [1, 2, 4, 8];
 const PLACE_DISTANCE_M: f64 = 2.0;
 /// Largest number of scans of another pass with which a scan is matched. Source: ours.
 const MAX_SCANS_PER_PASS: usize = 2;
-/// Largest number of older passes and of newer passes with which a scan is matched. Source: ours.
+/// Largest number of passes with which a scan is matched, the newest ones. Older ones would couple all passes with the first, and the factor
+/// of the graph would grow with the square of the time in one place. Source: ours.
 const MAX_PASSES: usize = 2;
 /// Number of scans between two passes of a place. Source: ours, 6 m at a gate of 0.3 m: more than two place distances and a turn.
 const MIN_PASS_STEP: usize = 20;
 
-/// Pairs (later scan, earlier scan) by the centres of the views (map frame, m): at most twelve for a scan.
+/// Pairs (later scan, earlier scan) by the centres of the views (map frame, m): at most eight for a scan.
 ///
-/// A scan is paired with its neighbours, and with the nearest scans of the two oldest and the two newest earlier passes.
+/// A scan is paired with its neighbours, and with the nearest scans of the newest earlier passes.
 pub(super) fn pairs(centres: &[Vector2]) -> Vec<(usize, usize)> {
     let mut places = Places::default();
     let mut found = Vec::new();
@@ -25,10 +26,8 @@ pub(super) fn pairs(centres: &[Vector2]) -> Vec<(usize, usize)> {
         found.extend(NEIGHBOUR_STEPS.iter().filter_map(|step| Some((k, k.checked_sub(*step)?))));
         let near = places.near(centres, k);
         let passes: Vec<&[usize]> = near.chunk_by(|a, b| b - a < MIN_PASS_STEP).collect();
-        for (number, pass) in passes.iter().enumerate() {
-            if number < MAX_PASSES || number + MAX_PASSES >= passes.len() {
-                found.extend(nearest(centres, *centre, pass).into_iter().map(|j| (k, j)));
-            }
+        for pass in passes.iter().rev().take(MAX_PASSES) {
+            found.extend(nearest(centres, *centre, pass).into_iter().map(|j| (k, j)));
         }
         places.add(k, *centre);
     }
@@ -50,7 +49,7 @@ struct Places {
     scans: BTreeMap<(i64, i64), Vec<usize>>,
 }
 
-/// Largest number of scans remembered in a square, half of them the oldest. Source: ours: it bounds the time of a robot that stays.
+/// Largest number of scans remembered in a square, the newest ones. Source: ours: it bounds the time of a robot that stays.
 const MAX_SCANS_PER_SQUARE: usize = 64;
 
 impl Places {
@@ -62,7 +61,7 @@ impl Places {
     fn add(&mut self, k: usize, centre: Vector2) {
         let scans = self.scans.entry(Self::square(centre)).or_default();
         if scans.len() == MAX_SCANS_PER_SQUARE {
-            scans.remove(MAX_SCANS_PER_SQUARE / 2);
+            scans.remove(0);
         }
         scans.push(k);
     }
@@ -109,7 +108,7 @@ mod tests {
         for centres in [stays, laps] {
             let mut counts = vec![0; 3000];
             pairs(&centres).iter().for_each(|pair| counts[pair.0] += 1);
-            assert!(counts.iter().all(|count| *count <= 12), "{:?}", counts.iter().max());
+            assert!(counts.iter().all(|count| *count <= 8), "{:?}", counts.iter().max());
         }
     }
 }

@@ -32,12 +32,13 @@ type BothEquations = [PairEquations; 2];
 
 /// The poses (m, rad) near `poses` at which all stored scans agree best; the first pose is fixed.
 ///
-/// `None` if fewer than two scans are stored, the graph does not determine all poses, or the scans agree no better than before. The same
-/// bits on any number of threads.
+/// `None` if fewer than two scans are stored, the graph is too large or does not determine all poses, the scans agree no better than before,
+/// or `goes_on` ends it between two rounds. The same bits on any number of threads.
 pub(crate) fn polished(
     config: &ParticleConfig,
     history: &ScanHistory,
     poses: &[Pose2],
+    goes_on: &dyn Fn() -> bool,
 ) -> Option<Vec<Pose2>> {
     if poses.len() < 2 {
         return None;
@@ -46,6 +47,9 @@ pub(crate) fn polished(
     let constraints = history.constraints(poses);
     let mut polished = poses.to_vec();
     for scale in KERNEL_SCALES_M {
+        if !goes_on() {
+            return None;
+        }
         step(&scans, &constraints, &mut polished, &model(config, scale))?;
     }
     let last = model(config, *KERNEL_SCALES_M.last()?);
@@ -89,7 +93,7 @@ fn step(
     let matches = matches(scans, poses, &pairs, model);
     let both = pairs.len();
     pairs.extend(constraints.iter().map(Constraint::poses));
-    let mut system = System::new(poses.len(), &pairs);
+    let mut system = System::new(poses.len(), &pairs)?;
     for (&(later, earlier), [there, back]) in pairs[..both].iter().zip(&matches) {
         if is_consistent(there, back) {
             let earlier_from_later = poses[earlier].inverse() * poses[later];

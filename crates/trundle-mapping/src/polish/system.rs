@@ -9,6 +9,9 @@ use trundle_optim::BlockMatrix;
 /// Information that fixes the first pose [1/m^2, 1/rad^2]. Source: ours.
 const FIRST_POSE_INFORMATION: f64 = 1e9;
 
+/// Largest number of blocks of the factor, 72 bytes each: 72 MB. Source: ours.
+const MAX_BLOCKS: usize = 1_000_000;
+
 /// Sparse normal equations of the steps of all poses, as right perturbations.
 #[derive(Debug)]
 pub(super) struct System {
@@ -17,9 +20,10 @@ pub(super) struct System {
 }
 
 impl System {
-    /// Zeros for `count` poses that are coupled by `pairs`.
-    pub(super) fn new(count: usize, pairs: &[(usize, usize)]) -> Self {
-        Self { matrix: BlockMatrix::new(count, pairs), rhs: vec![Vector3::zeros(); count] }
+    /// Zeros for `count` poses that are coupled by `pairs`; `None` if their factor were larger than [`MAX_BLOCKS`].
+    pub(super) fn new(count: usize, pairs: &[(usize, usize)]) -> Option<Self> {
+        let matrix = BlockMatrix::new_within(count, pairs, MAX_BLOCKS)?;
+        Some(Self { matrix, rhs: vec![Vector3::zeros(); count] })
     }
 
     /// Adds the match of the hits of scan `from` with scan `to`.

@@ -56,7 +56,7 @@ fn the_poses_of_two_laps_become_those_of_the_truth() {
     let (truth, poses, history) = laps(&config, None);
     let before = error(&poses, &truth, None);
     assert!(before.0 > 0.04 && before.1 > 0.009, "{before:?}");
-    let after = error(&polished(&config, &history, &poses).unwrap(), &truth, None);
+    let after = error(&polished(&config, &history, &poses, &|| true).unwrap(), &truth, None);
     assert!(after.0 < 0.006 && after.1 < 0.002, "{after:?}");
 }
 
@@ -64,7 +64,7 @@ fn the_poses_of_two_laps_become_those_of_the_truth() {
 fn a_scan_of_another_place_does_not_displace_the_others() {
     let config = ParticleConfig::default();
     let (truth, poses, history) = laps(&config, Some(17));
-    let after = error(&polished(&config, &history, &poses).unwrap(), &truth, Some(17));
+    let after = error(&polished(&config, &history, &poses, &|| true).unwrap(), &truth, Some(17));
     assert!(after.0 < 0.01 && after.1 < 0.003, "{after:?}");
 }
 
@@ -74,7 +74,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
     let (_, poses, history) = laps(&config, None);
     let by = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| polished(&config, &history, &poses)).unwrap()
+        pool.install(|| polished(&config, &history, &poses, &|| true)).unwrap()
     };
     assert_eq!(by(1), by(4));
 }
@@ -94,7 +94,7 @@ fn a_corridor_holds_no_position_along_it_and_keeps_the_steps_of_the_filter() {
     let poses: Vec<Pose2> = (0..40).map(|k| Pose2::new(0.3 * f64::from(k), 0.0, 0.0)).collect();
     poses.iter().for_each(|_| history.push(stored.clone(), Matrix3::identity() * 1e-3));
     let (far, turn) =
-        polished(&config, &history, &poses).map_or((0.0, 0.0), |after| error(&after, &poses, None));
+        polished(&config, &history, &poses, &|| true).map_or((0.0, 0.0), |after| error(&after, &poses, None));
     assert!(far < 1e-3 && turn < 1e-4, "{far} m, {turn} rad");
 }
 
@@ -103,7 +103,7 @@ fn an_empty_history_and_one_scan_stay_as_they_are() {
     let config = ParticleConfig::default();
     let (_, poses, mut history) = laps(&config, None);
     history.truncate(1);
-    assert_eq!(polished(&config, &history, &poses[..1]), None);
+    assert_eq!(polished(&config, &history, &poses[..1], &|| true), None);
     history.truncate(0);
-    assert_eq!(polished(&config, &history, &[]), None);
+    assert_eq!(polished(&config, &history, &[], &|| true), None);
 }

@@ -78,11 +78,16 @@ impl LoopCorrector {
     }
 
     /// Polishes the trajectory of the best particle, and redraws the map. Returns the largest displacement of a pose, m; `None` if the poses
-    /// are kept.
-    pub(crate) fn polish(&mut self, models: &FilterModels, set: &mut ParticleSet) -> Option<f64> {
+    /// are kept, or `goes_on` ended it.
+    pub(crate) fn polish(
+        &mut self,
+        models: &FilterModels,
+        set: &mut ParticleSet,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Option<f64> {
         self.finish(models, set);
         let poses: Vec<Pose2> = set.trajectory().into_iter().map(|(_, pose)| pose).collect();
-        let polished = polished(&models.config, &self.history, &poses)?;
+        let polished = polished(&models.config, &self.history, &poses, goes_on)?;
         let farthest = polished.iter().zip(&poses).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
         self.history.replace_measurements(&polished);
         self.redraw = Some(MapRedraw { poses: polished, farthest, ..MapRedraw::default() });

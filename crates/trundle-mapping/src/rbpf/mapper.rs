@@ -213,16 +213,16 @@ impl ParticleMapper {
 
     /// Polishes the finished trajectory (\[Lu97\], \[Konolige10\]) after the last scan of a log, and redraws the map.
     ///
-    /// All stored scans are matched with their neighbours and with other passes of the same place, and the poses are those at which all
-    /// agree best. The first pose does not change. All particles continue from the result. Returns the largest displacement of a stored pose,
-    /// m; `None` if the poses are kept: with odometry without drift (`pose_prior`), or if the scans agree no better at other poses. The same
+    /// Each stored scan is matched with its neighbours and with other passes of the same place, and the poses are those at which all
+    /// agree best. `goes_on` is asked between the rounds. The first pose does not change. All particles continue from the result. Returns the largest displacement of a stored pose,
+    /// m; `None` if the poses are kept: with odometry without drift (`pose_prior`), if the scans have too many parallel passes, or if the scans agree no better at other poses. The same
     /// scans give the same bytes on any number of threads.
-    pub fn polish(&mut self) -> Option<f64> {
+    pub fn polish(&mut self, goes_on: &dyn Fn() -> bool) -> Option<f64> {
         self.finish();
         if self.models.config.pose_prior.is_some() {
             return None;
         }
-        let farthest = self.loops.polish(&self.models, &mut self.set)?;
+        let farthest = self.loops.polish(&self.models, &mut self.set, goes_on)?;
         self.renew_given();
         Some(farthest)
     }
