@@ -21,6 +21,10 @@ from node_checks import lifecycle_states, parameters, transforms
 
 # Codes of an unreachable goal: GOAL_OUTSIDE_MAP, GOAL_OCCUPIED, NO_VALID_PATH of ComputePathToPose.
 UNREACHABLE_CODES = {204, 206, 208}
+# Distance within which FollowPath passes the poses of the path, m.
+PASSED_M = 0.3
+# Distance of the corner of a detour from the direct way, m.
+DETOUR_M = 0.6
 
 
 def allowance(limit):
@@ -110,10 +114,36 @@ def compute_and_follow(checks, user, options):
     ends = [math.dist(planar(path.poses[i].pose)[:2], relative(user.start, place)[:2]) for i, place in ((0, user.truth()), (-1, FAR))]
     checks.check("the path leads from the robot to the pose", path.header.frame_id == "map" and max(ends) < 0.15,
                  f"ends {ends[0]:.2f} and {ends[1]:.2f} m off")
-    result = user.send("follow_path", path=path).wait()
+    corners, driven = [planar(pose.pose)[:2] for pose in path.poses], []
+    sent = user.send("follow_path", path=path)
+    user.until(lambda: driven.append(relative(user.start, user.truth())[:2]) or sent.done.done(), 300)
+    result = sent.wait()
     distance, _ = user.error_to(FAR)
     checks.check("follow_path drives to the path's end", status(result) == "SUCCEEDED" and distance < 0.25,
                  f"{outcome(result)}, {100 * distance:.1f} cm")
+    off = max(min(from_segment(at, a, b) for a, b in zip(corners, corners[1:])) for at in driven)
+    checks.check("follow_path keeps to the path", off < PASSED_M + 0.05, f"at most {100 * off:.0f} cm off it")
+    detour_path(checks, user)
+
+
+def detour_path(checks, user):
+    """A path that leaves the direct way by more than the robot may leave the path."""
+    (x, y, _), (u, v, _) = user.truth(), NEAR
+    length = math.hypot(u - x, v - y)
+    corner = ((x + u) / 2 - DETOUR_M * (v - y) / length, (y + v) / 2 + DETOUR_M * (u - x) / length, 0.0)
+    path = Path(header=user.map_pose(NEAR).header, poses=[user.map_pose(p) for p in ((x, y, 0.0), corner, NEAR)])
+    sent, driven = user.send("follow_path", path=path), []
+    user.until(lambda: driven.append(math.dist(user.truth()[:2], corner[:2])) or sent.done.done(), 300)
+    result = sent.wait()
+    checks.check("follow_path takes a detour", status(result) == "SUCCEEDED" and min(driven) < PASSED_M + 0.05,
+                 f"{outcome(result)}, {100 * min(driven):.0f} cm from its corner")
+
+
+def from_segment(at, a, b):
+    """Distance of a point from a line segment, m."""
+    length = math.dist(a, b)
+    part = 0 if length == 0 else sum((at[i] - a[i]) * (b[i] - a[i]) for i in (0, 1)) / length**2
+    return math.dist(at, [a[i] + min(max(part, 0), 1) * (b[i] - a[i]) for i in (0, 1)])
 
 
 def waypoints(checks, user, options):

@@ -44,6 +44,9 @@ struct TaskEntry {
     heading_tolerance_deg: Option<f64>,
     /// Behaviour if an obstacle blocks the path to a goal.
     when_blocked: Option<WhenBlocked>,
+    /// Whether the robot drives on to the next goal without a stop.
+    #[serde(default)]
+    pass_through: bool,
 }
 
 /// Reads a mission.
@@ -92,7 +95,7 @@ const STRAIGHT_SPEED_M_S: f64 = 0.2;
 const TASK_FORMS: &str = "expected one of go = [X, Y, DEG], place = NAME, explore = true, turn_deg = DEG, straight_m = M, return = true, dock = true";
 
 /// Keys of a goal's settings.
-const GOAL_KEYS: &str = "patience_s, tolerance_m, heading_tolerance_deg and when_blocked";
+const GOAL_KEYS: &str = "patience_s, tolerance_m, heading_tolerance_deg, when_blocked and pass_through";
 
 fn task(entry: &TaskEntry, places: &BTreeMap<String, Pose2>) -> Result<Task, String> {
     let go = entry.go.map(|[x, y, heading_deg]| Ok(Task::go(Pose2::new(x, y, heading_deg.to_radians()))));
@@ -128,6 +131,7 @@ impl TaskEntry {
         options.tolerance = self.tolerance_m;
         options.heading_tolerance = self.heading_tolerance_deg.map(f64::to_radians);
         options.when_blocked = self.when_blocked;
+        options.pass_through = self.pass_through;
         options
     }
 }
@@ -225,7 +229,11 @@ mod tests {
             ),
             (
                 "[[task]]\nexplore = true\ntolerance_m = 0.3\n",
-                "mission.toml: task 1: patience_s, tolerance_m, heading_tolerance_deg and when_blocked are settings of a goal: ",
+                "mission.toml: task 1: patience_s, tolerance_m, heading_tolerance_deg, when_blocked and pass_through are settings of a goal: ",
+            ),
+            (
+                "[[task]]\ngo = [1, 2, 3]\npass_through = true\n",
+                "mission.toml: pass_through of the goal of task 1 is true, expected a tolerance",
             ),
             (
                 "[[task]]\ngo = [1, 2, 3]\nwhen_blocked = \"push\"\n",

@@ -61,7 +61,7 @@ pub use image::{ColorImage, DepthImage, GrayImage, Image, gray_from_color};
 pub use invalid::{Invalid, require_finite, require_in, require_positive};
 pub use map_annotations::{MapAnnotations, NamedPlace};
 pub use odometry::{GyroRate, Odometry, WheelTicks};
-pub use path::Path;
+pub use path::{Path, shape_points};
 pub use portable_math::{Hypotenuse, angle_of_f32, tanh_f32};
 pub use pose2::{MAX_COORDINATE_M, Pose2};
 pub use pose3::Pose3;

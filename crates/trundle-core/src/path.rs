@@ -35,9 +35,52 @@ impl Path {
     }
 }
 
+/// Indices of the points that preserve the shape of a polyline best \[Douglas73\], in order: its ends, then repeatedly the point farthest from
+/// the line between its selected neighbours, until `max_points` are selected, or every other point is at most `tolerance` m off. Always the
+/// ends.
+#[must_use]
+pub fn shape_points(points: &[Vector2], max_points: usize, tolerance: f64) -> Vec<usize> {
+    let mut kept: Vec<usize> = [0, points.len().saturating_sub(1)].into_iter().take(points.len()).collect();
+    kept.dedup();
+    while kept.len() < max_points {
+        let farthest = kept.windows(2).filter_map(|ends| farthest(points, ends[0], ends[1]));
+        let farthest = farthest.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(off, _)| *off > tolerance);
+        let Some((_, index)) = farthest else { break };
+        kept.insert(kept.partition_point(|k| *k < index), index);
+    }
+    kept
+}
+
+/// The point between two of a polyline that is farthest from the line between them: its distance \[m\] and its index.
+fn farthest(points: &[Vector2], from: usize, to: usize) -> Option<(f64, usize)> {
+    let (a, chord) = (points[from], points[to] - points[from]);
+    let offset = |index: usize| {
+        let beside = points[index] - a;
+        let along = (beside.dot(&chord) / chord.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        ((beside - chord * along).norm(), index)
+    };
+    (from + 1..to).map(offset).max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_polyline_keeps_its_ends_and_corners() {
+        let straight = (0..50).map(|i| Vector2::new(0.1 * f64::from(i), 0.0));
+        let up = (0..30).map(|i| Vector2::new(4.9, 0.1 * f64::from(i)));
+        let line: Vec<Vector2> = straight.chain(up).collect();
+        assert_eq!(shape_points(&line, 3, -1.0), [0, 50, 79]);
+        assert_eq!(shape_points(&line, 2, -1.0), [0, 79]);
+        assert_eq!(shape_points(&line, 80, 0.01), [0, 50, 79], "no other point is off the line");
+        assert_eq!(shape_points(&line, 15, -1.0).len(), 15);
+        assert!(shape_points(&[], 15, 0.0).is_empty());
+        assert_eq!(shape_points(&line[..1], 15, 0.0), [0]);
+        let ring =
+            [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0), (0.0, 0.0)].map(|(x, y)| Vector2::new(x, y));
+        assert_eq!(shape_points(&ring, 9, 0.1), [0, 1, 2, 3, 4]);
+    }
 
     #[test]
     fn length_adds_up_and_nan_is_refused() {

@@ -2,7 +2,7 @@
 
 use super::{pose, stamp};
 use crate::generated::nav_msgs::PathMessage;
-use trundle_core::{Invalid, Pose2, Stamp};
+use trundle_core::{Invalid, Pose2, Stamp, shape_points};
 
 /// Poses along a path as a message.
 #[must_use]
@@ -11,29 +11,12 @@ pub fn to_ros(poses: &[Pose2], at: Stamp, frame: &str) -> PathMessage {
     PathMessage { header: stamp::header(at, frame), poses }
 }
 
-/// The poses that preserve the path's shape best \[Douglas73\]: its ends, then repeatedly the pose farthest from the line between its
-/// selected neighbours. At most `count` poses, but always the ends.
+/// The poses that preserve the path's shape best: at most `count`, but always the ends.
 #[must_use]
 pub fn thinned(poses: &[Pose2], count: usize) -> Vec<Pose2> {
-    let mut kept: Vec<usize> = [0, poses.len().saturating_sub(1)].into_iter().take(poses.len()).collect();
-    kept.dedup();
-    while kept.len() < count {
-        let farthest = kept.windows(2).filter_map(|ends| farthest(poses, ends[0], ends[1]));
-        let Some((_, index)) = farthest.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
-        kept.insert(kept.partition_point(|k| *k < index), index);
-    }
-    kept.into_iter().map(|k| poses[k]).collect()
-}
-
-/// The pose between two of a path that is farthest from the line between them: its distance \[m\] and its index.
-fn farthest(poses: &[Pose2], from: usize, to: usize) -> Option<(f64, usize)> {
-    let (a, chord) = (poses[from].position(), poses[to].position() - poses[from].position());
-    let offset = |index: usize| {
-        let beside = poses[index].position() - a;
-        let along = (beside.dot(&chord) / chord.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        ((beside - chord * along).norm(), index)
-    };
-    (from + 1..to).map(offset).max_by(|a, b| a.0.total_cmp(&b.0))
+    let points: Vec<_> = poses.iter().map(Pose2::position).collect();
+    // A straight path has poses between its ends too.
+    shape_points(&points, count, f64::NEG_INFINITY).into_iter().map(|index| poses[index]).collect()
 }
 
 /// The poses of a path.

@@ -153,6 +153,7 @@ fn default_options(config: &RobotConfig) -> GoalOptions {
         when_blocked: Some(config.mission_executor.when_blocked),
         tolerance: (tolerance > 0.0).then_some(tolerance),
         heading_tolerance: None,
+        pass_through: false,
     }
 }
 

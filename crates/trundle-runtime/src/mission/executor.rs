@@ -20,7 +20,7 @@ use trundle_planning::{Exploration, Explorer, Frontier};
 ///
 /// | task | goals for the navigator | ends when |
 /// |---|---|---|
-/// | go, return | the goal | it has arrived, or given up |
+/// | go, return | the goal | it has arrived, passed a goal to pass through, or given up |
 /// | turn, straight | the motion | it is done, or safety stops it for 5 s |
 /// | explore | a turn on the spot, then viewpoint after viewpoint | no frontier is left |
 /// | dock | a search for light, a survey of the station's axis, a straight move onto its contacts | the battery charges, or given up |
@@ -160,6 +160,7 @@ impl MissionExecutor {
         let explores = explores || matches!(&self.current, Some(Current { work: Work::Docking(_), .. }));
         let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
         state.is_over() && !self.is_idle()
+            || self.passes(s, state)
             || explores && driving && self.frontier_check_due.will_be_due(s.now)
     }
 
@@ -178,10 +179,25 @@ impl MissionExecutor {
             DriveState::Stopped { reason } => self.on_stopped(reason, s),
             _ => {}
         }
+        if self.passes(s, state) {
+            self.end(TaskEnd::Done, s);
+        }
         if self.current.is_none() {
             return self.start_next_task(s);
         }
         self.explore_further(s, state)
+    }
+
+    /// Whether the robot drives on from the present goal to the next one.
+    fn passes(&self, s: &WorldState<'_>, state: &DriveState) -> bool {
+        let Some(Current { entry: Entry { task: Task::Go(goal), .. }, work: Work::Going, .. }) =
+            &self.current
+        else {
+            return false;
+        };
+        let is_under_way = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
+        let is_near = goal.options.is_arrival(&s.estimate.pose, &goal.pose);
+        goal.options.pass_through && is_under_way && is_near && !self.queue.is_empty()
     }
 
     /// Begins the next task.
@@ -306,7 +322,7 @@ impl MissionExecutor {
             return;
         }
         let (entry, reason) = (current.entry, reason.clone());
-        if entry.is_second_try || self.queue.is_empty() {
+        if entry.is_second_try || self.queue.is_empty() || is_passed_through(entry.task) {
             return self.end(TaskEnd::GivenUp { reason }, s);
         }
         let returns = matches!(self.queue.back(), Some(Entry { task: Task::Return, .. }));
@@ -322,6 +338,11 @@ impl MissionExecutor {
             self.records.push(TaskRecord { index, task, end, from, to, pose, bound, before_restart: false });
         }
     }
+}
+
+/// Whether a task is a goal that the robot drives through: it is not tried again at the end of the mission.
+fn is_passed_through(task: Task) -> bool {
+    matches!(task, Task::Go(goal) if goal.options.pass_through)
 }
 
 /// Returns the failure of a task that was given up.

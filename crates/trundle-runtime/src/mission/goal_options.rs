@@ -33,6 +33,10 @@ pub struct GoalOptions {
     /// Behaviour if an obstacle blocks the path. `None`: `mission_executor.when_blocked`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub when_blocked: Option<WhenBlocked>,
+    /// Whether the robot continues to the next goal of the mission without a stop once it is within the [`GoalOptions::tolerance`]. The last
+    /// goal is always driven to.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub pass_through: bool,
 }
 
 /// Behaviour if an obstacle blocks the path.
@@ -80,6 +84,10 @@ impl GoalOptions {
         };
         check("patience", self.patience, "s", PATIENCE_RANGE_S)?;
         check("tolerance", self.tolerance, "m", TOLERANCE_RANGE_M)?;
+        if self.pass_through && self.tolerance.is_none() {
+            let name = format!("pass_through {of}");
+            return Err(Invalid::new(name, true, "", "a tolerance of the position beside it"));
+        }
         // Missions hold headings in degrees.
         let heading = self.heading_tolerance.map(f64::to_degrees);
         if let (Some(heading), None) = (heading, self.tolerance) {
@@ -97,6 +105,7 @@ impl GoalOptions {
             tolerance: self.tolerance.or(others.tolerance),
             heading_tolerance: self.heading_tolerance.or(others.heading_tolerance),
             when_blocked: self.when_blocked.or(others.when_blocked),
+            pass_through: self.pass_through,
         }
     }
 
@@ -120,6 +129,8 @@ mod tests {
         assert!(message(GoalOptions { patience: Some(0.0), ..some }).contains("patience of task 1"));
         assert!(message(GoalOptions { tolerance: Some(0.001), ..some }).contains("tolerance of task 1"));
         assert!(message(GoalOptions { tolerance: Some(f64::NAN), ..some }).contains("tolerance of task 1"));
+        let passed = message(GoalOptions { pass_through: true, ..some });
+        assert!(passed.starts_with("pass_through of task 1 is true, expected a tolerance"), "{passed}");
         let turned = message(GoalOptions { heading_tolerance: Some(4.0), tolerance: Some(0.3), ..some });
         assert!(turned.contains("heading tolerance of task 1 is 229") && turned.contains(" deg"), "{turned}");
     }

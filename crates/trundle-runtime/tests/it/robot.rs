@@ -5,7 +5,8 @@ use trundle_core::{
     Stamp, Touch, Twist2, Vector2, WheelTicks,
 };
 use trundle_runtime::{
-    Checkpoint, CheckpointError, DriveState, RangeSource, ReasonKind, Robot, RobotConfig, StepReport, Task,
+    Checkpoint, CheckpointError, DriveState, GoalOptions, Mission, RangeSource, ReasonKind, Robot,
+    RobotConfig, StepReport, Task, TaskEnd, TaskGoal,
 };
 
 /// A wall of one colour across the view, `distance` m ahead of the base, and the floor before it, as the default mount sees them.
@@ -122,6 +123,25 @@ fn it_starts_when_the_path_is_in_view_and_stops_when_images_stop() {
     assert_eq!(last.twist, Some(Twist2::ZERO));
     let DriveState::Waiting { reason } = &last.state else { panic!("{:?}", last.state) };
     assert!(reason.is_due_to(ReasonKind::ImageMissing), "{reason}");
+}
+
+#[test]
+fn it_passes_a_goal_on_its_way_without_a_stop() {
+    let mut options = GoalOptions::default();
+    (options.tolerance, options.pass_through) = (Some(0.3), true);
+    let via = Task::Go(TaskGoal::new(Pose2::new(0.8, 0.0, 0.0), options));
+    let mut robot = Robot::new(RobotConfig::default()).unwrap();
+    robot.begin(&Mission::new(vec![via, Task::go(Pose2::new(1.6, 0.0, 0.0))]).unwrap());
+    let reports = drive(&mut robot, &mut Base::default(), (0.0, 15.0), 15.0);
+    let [passed, arrived] = robot.tasks_ended() else { panic!("{:?}", robot.tasks_ended()) };
+    assert!(passed.end == TaskEnd::Done && arrived.end == TaskEnd::Done);
+    assert!(
+        (0.45..0.6).contains(&passed.pose.x) && (arrived.pose.x - 1.6).abs() < 0.03,
+        "{passed:?} {arrived:?}"
+    );
+    let at = (passed.to.as_secs() * 50.0) as usize;
+    let slowest = reports[at - 25..at + 25].iter().map(|report| report.twist.unwrap().v).fold(1.0, f64::min);
+    assert!(slowest > 0.25, "{slowest} m/s");
 }
 
 #[test]

@@ -13,6 +13,7 @@ use crate::generated::geometry_msgs::PoseStamped;
 use crate::outputs::FrameNames;
 use trundle_app::operator::RunView;
 use trundle_core::Pose2;
+use trundle_runtime::{GoalOptions, Task, TaskGoal};
 
 /// The robot's pose as feedback.
 fn current_pose(view: &RunView, frames: &FrameNames) -> PoseStamped {
@@ -22,6 +23,15 @@ fn current_pose(view: &RunView, frames: &FrameNames) -> PoseStamped {
 /// Seconds as a duration; 0 if they are not known.
 fn duration(seconds: f64) -> Duration {
     stamp::duration(if seconds.is_finite() { seconds } else { 0.0 })
+}
+
+/// Tasks that lead through poses, within `tolerance` m of each, and end exactly at the last one.
+fn passing(poses: &[Pose2], tolerance: f64) -> Vec<Task> {
+    let Some((last, before)) = poses.split_last() else { return Vec::new() };
+    let mut options = GoalOptions::default();
+    (options.tolerance, options.pass_through) = (Some(tolerance), true);
+    let through = before.iter().map(|pose| Task::Go(TaskGoal::new(*pose, options)));
+    through.chain([Task::go(*last)]).collect()
 }
 
 /// Remaining distance along the plan \[m\] and time \[s\]; without a plan straight to `goal`.

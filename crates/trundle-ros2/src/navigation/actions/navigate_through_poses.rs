@@ -1,6 +1,6 @@
-//! `NavigateThroughPoses`: pose after pose, with a stop at each.
+//! `NavigateThroughPoses`: pose after pose, with a stop at the last one.
 
-use super::{current_pose, duration, left};
+use super::{current_pose, duration, left, passing};
 use crate::generated::nav2_msgs::{
     NavigateThroughPoses, NavigateThroughPosesFeedback as Feedback, NavigateThroughPosesGoal as Goal,
     NavigateThroughPosesResult as Outcome, WaypointStatus,
@@ -14,6 +14,10 @@ use crate::outputs::FrameNames;
 use trundle_app::operator::RunView;
 use trundle_runtime::{Task, TaskEnd};
 
+/// Distance from a pose before the last one at which the robot continues to the next \[m\]. Source: Nav2, `radius` of RemovePassedGoals in
+/// `navigate_through_poses_w_replanning_and_recovery.xml`.
+const PASSED_M: f64 = 0.7;
+
 impl NavigationAction for NavigateThroughPoses {
     fn tasks(goal: &Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, NavigationRefusal<Outcome>> {
         let failed = |error_code, error_msg| Outcome { error_code, error_msg, ..Outcome::default() };
@@ -21,12 +25,12 @@ impl NavigationAction for NavigateThroughPoses {
             let message = "poses is empty, expected at least one".to_owned();
             return Err(NavigationRefusal::Failed(failed(Outcome::NO_VALID_WAYPOINTS, message)));
         }
-        let task = |pose| {
-            let pose = in_map(pose, context.frames, context.view);
-            pose.map(Task::go)
+        let pose = |pose| {
+            in_map(pose, context.frames, context.view)
                 .map_err(|error| pose_error(error, |message| failed(Outcome::TF_ERROR, message)))
         };
-        goal.poses.goals.iter().map(task).collect()
+        let poses: Result<Vec<_>, _> = goal.poses.goals.iter().map(pose).collect();
+        Ok(passing(&poses?, PASSED_M))
     }
 
     fn feedback(goal: &Goal, view: &RunView, progress: &GoalProgress, frames: &FrameNames) -> Feedback {

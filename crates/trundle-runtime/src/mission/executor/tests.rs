@@ -1,6 +1,7 @@
 //! Tasks in order: their goals, their ends, and second attempts.
 
 use super::*;
+use crate::mission::TaskGoal;
 use crate::reason::ReasonKind;
 use proptest::prelude::*;
 use trundle_core::{OccupancyGrid, PoseEstimate, Twist2};
@@ -247,4 +248,35 @@ fn a_new_mission_forgets_the_old_one_and_an_empty_one_leaves_nothing_to_do() {
     assert!(executor.is_idle() && executor.failure().is_none());
     assert_eq!(executor.step(&s, &DriveState::Arrived), None);
     assert!(!executor.may_take_long(&s, &DriveState::Arrived));
+}
+
+#[test]
+fn a_goal_to_pass_through_ends_within_its_tolerance_while_the_robot_drives() {
+    let grid = room();
+    let options = GoalOptions { tolerance: Some(0.3), pass_through: true, ..GoalOptions::default() };
+    let via = |x: f64| Task::Go(TaskGoal::new(Pose2::new(x, 0.35, 0.0), options));
+    let end = Pose2::new(2.0, 0.0, 0.0);
+    let mut executor = executor(&[via(0.7), via(1.2), Task::go(end)]);
+    let mut s = world(&grid);
+    assert_eq!(executor.step(&s, &DriveState::Idle), Some(Goal::Exact(Pose2::new(0.7, 0.35, 0.0))));
+    assert_eq!(executor.step(&s, &DriveState::Driving), None, "0.35 m off");
+    s.estimate.pose.x = 0.45;
+    assert!(executor.may_take_long(&s, &DriveState::Driving), "the next goal is planned for at once");
+    assert_eq!(executor.step(&s, &DriveState::Driving), Some(Goal::Exact(Pose2::new(1.2, 0.35, 0.0))));
+    let stopped = DriveState::Stopped { reason: Reason::MovingObstacle };
+    assert_eq!(executor.step(&s, &stopped), Some(Goal::Exact(end)), "not tried again");
+    assert_eq!(executor.step(&s, &DriveState::Arrived), None);
+    let ends: Vec<_> = executor.records().iter().map(|record| record.end == TaskEnd::Done).collect();
+    assert_eq!(ends, [true, false, true]);
+}
+
+#[test]
+fn the_last_goal_is_driven_to() {
+    let grid = room();
+    let options = GoalOptions { tolerance: Some(0.5), pass_through: true, ..GoalOptions::default() };
+    let mut executor = executor(&[Task::Go(TaskGoal::new(Pose2::new(0.5, 0.35, 0.0), options))]);
+    let s = world(&grid);
+    assert!(executor.step(&s, &DriveState::Idle).is_some());
+    assert_eq!(executor.step(&s, &DriveState::Driving), None);
+    assert!(!executor.is_idle());
 }
