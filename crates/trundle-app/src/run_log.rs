@@ -27,6 +27,10 @@ pub struct RunLog {
     pub plans: usize,
     /// Images by tracking state.
     pub tracked: TrackCounts,
+    /// Scans that were matched to the map.
+    pub scans_matched: usize,
+    /// Time during which the pose was unknown, or too uncertain to drive \[s\].
+    pub pose_lost_s: f64,
     /// Power, wheel drops, losses of devices.
     pub body: BodyLog,
     /// The newest state.
@@ -71,6 +75,12 @@ pub struct TrackCounts {
 }
 
 impl TrackCounts {
+    /// Number of images.
+    #[must_use]
+    pub fn total(&self) -> usize {
+        self.ok + self.weak + self.dead_reckoned + self.lost
+    }
+
     /// Counts one image.
     pub fn count(&mut self, tracking: Tracking) {
         match tracking {
@@ -111,6 +121,9 @@ impl RunLog {
     /// Logs the report of a step.
     pub fn on_report(&mut self, now: Stamp, report: &StepReport) {
         self.start.get_or_insert(now);
+        if report.pose_is_lost {
+            self.pose_lost_s += now - self.now.max(self.start.unwrap_or(now));
+        }
         self.now = now;
         if let Some(estimate) = &report.estimate
             && self.changes.last().is_none_or(|last| is_change(&last.state, &report.state))
@@ -120,6 +133,7 @@ impl RunLog {
         }
         self.state = report.state.clone();
         self.plans += usize::from(report.replanned);
+        self.scans_matched += usize::from(report.measurements.scan.is_some());
         if let Some(track) = &report.track {
             self.tracked.count(track.tracking);
             self.estimates.extend(report.estimate);

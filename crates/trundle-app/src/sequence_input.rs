@@ -2,6 +2,7 @@
 //! robot also the gyro and the laser of a bag.
 
 mod frames;
+mod gyro_check;
 mod idle_options;
 mod motion_events;
 mod recorded_run;
@@ -14,6 +15,7 @@ pub use topic_rows::topic_rows;
 
 use crate::{AppError, log_warnings};
 use frames::SequenceFrames;
+use gyro_check::gyro_problem;
 use motion_events::fused_odometry;
 use std::path::{Path, PathBuf};
 use trundle_core::{GyroRate, Pose2, Pose3, Scan, Stamp};
@@ -131,7 +133,8 @@ impl SequenceInput {
     fn of_bag(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
         let path = options.path;
         options.refuse_unused_scans()?;
-        let sequence = RosSequence::open(path, &options.topics, options.camera.is_none())?;
+        let sequence = RosSequence::open(path, &options.topics, options.camera.is_none());
+        let sequence = sequence.map_err(|error| with_laser_hint(error.into(), path))?;
         let mut camera = match sequence.camera() {
             None if sequence.is_empty() => camera_of(&RobotConfig::default(), path),
             Some(camera) => SequenceCamera {
@@ -149,6 +152,9 @@ impl SequenceInput {
         // Depth of ROS is in millimetres (REP 118), independent of the unit in folders of the same camera.
         camera.model.depth_scale = options.depth_scale.unwrap_or(KINECT_V2_DEPTH_SCALE);
         tracing::info!("{}", sequence.topics());
+        if let Some(problem) = gyro_problem(sequence.odometry().unwrap_or_default(), sequence.gyro()) {
+            tracing::warn!("{}: {}: {problem}", path.display(), sequence.topics().imu);
+        }
         let mut robot = RobotConfig::default();
         robot.camera = camera.model.camera;
         match sequence.base_from_camera().map(|pose| CameraMount::of_pose(&pose)) {
@@ -386,6 +392,13 @@ impl SequenceInput {
         let camera = &self.camera.model.camera;
         (camera.width(), camera.height())
     }
+}
+
+/// The problem of a bag without images, with the commands that read its laser if it has one.
+fn with_laser_hint(problem: AppError, path: &Path) -> AppError {
+    let is_of_laser = RosTopics::read(path).is_ok_and(|topics| topics.has_scans() && !topics.has_images());
+    let hint = "the bag has scans of a laser, which `trundle map` and `trundle replay` read";
+    if is_of_laser { AppError::Input(format!("{problem}; {hint}")) } else { problem }
 }
 
 /// The depth scale for a camera file without one: `usual`, or another one in use if the first images are unusable with it. A warning names

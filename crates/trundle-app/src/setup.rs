@@ -241,7 +241,13 @@ impl RunSetup {
     /// The last goal of the mission.
     #[must_use]
     pub fn last_goal(&self) -> Option<Pose2> {
-        self.mission.tasks().iter().rev().find_map(Self::goal_of)
+        self.last_goal_task().as_ref().and_then(Self::goal_of)
+    }
+
+    /// The last task of the mission that has a goal.
+    #[must_use]
+    pub fn last_goal_task(&self) -> Option<Task> {
+        self.mission.tasks().iter().rev().find(|task| Self::goal_of(task).is_some()).copied()
     }
 }
 

@@ -191,7 +191,7 @@ const HEADER: [&str; 7] =
 
 /// The number of reached goals, and of all.
 fn reached(trial: &Trial) -> (usize, usize) {
-    let there = trial.numbers.goals.iter().filter(|goal| goal.is_reached(0.05, 3_f64.to_radians()));
+    let there = trial.numbers.goals.iter().filter(|goal| goal.is_reached());
     (there.count(), trial.numbers.goals_asked.unwrap_or(0))
 }
 

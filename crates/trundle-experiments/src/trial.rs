@@ -298,9 +298,9 @@ pub(crate) mod fixtures {
             end: RunEnd {
                 state: DriveState::Arrived,
                 is_operated: false,
-                is_of_sensors: false,
-                has_laser_map: false,
+                of_sensors: None,
                 out_of_time: None,
+                allowed: trundle_app::report::GoalOutcome::exact(),
                 tasks: TaskCounts::default(),
             },
         };

@@ -14,6 +14,8 @@ pub struct StepReport {
     pub twist: Option<Twist2>,
     /// The pose estimate after the step.
     pub estimate: Option<PoseEstimate>,
+    /// Whether the pose is too uncertain to drive, or unknown.
+    pub pose_is_lost: bool,
     /// Stamp of the image that was processed in this step, or whose result was applied.
     pub image: Option<Stamp>,
     /// Reason why the image cannot be decoded.

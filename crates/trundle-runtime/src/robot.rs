@@ -185,6 +185,7 @@ impl Robot {
     /// Completes a report with estimate and state after the step.
     fn complete(&mut self, report: &mut StepReport) {
         report.estimate = Some(self.localizer.estimate());
+        report.pose_is_lost = self.is_lost();
         self.steering.complete(self.latest.sensors.newest(), report);
     }
 

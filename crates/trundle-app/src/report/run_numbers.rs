@@ -1,14 +1,15 @@
 //! The figures of a run, and their table and summary.
 
-use super::GoalOutcome;
+use super::goal_outcome::allowed;
+use super::{GoalOutcome, SensorsRun};
 use crate::real_time::RealTimeReport;
 use crate::{FinishedRun, RunSetup, TrackCounts};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
-use trundle_core::Cell;
+use trundle_core::PoseBound;
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::Summary;
-use trundle_runtime::{DriveState, GoalApproachReport, RangeSource, Reason, Stage, StageTimes, TaskEnd};
+use trundle_runtime::{DriveState, GoalApproachReport, Reason, Stage, StageTimes, TaskEnd};
 
 /// The numbers of a run, without the wall clock's.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -54,16 +55,16 @@ pub struct RunEnd {
     pub state: DriveState,
     /// Whether an operator gave the missions: the end of the run is then no failure.
     pub is_operated: bool,
-    /// Whether the run had only the sensors of a robot that something else drove, and no mission.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub is_of_sensors: bool,
-    /// Whether scans of a laser entered the map.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub has_laser_map: bool,
+    /// The result of a run that had only the sensors of a robot that something else drove, and no mission.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of_sensors: Option<SensorsRun>,
     /// The time limit that ended the run \[s\], if one did.
     pub out_of_time: Option<f64>,
     /// Numbers of tasks at the end, with and without a goal.
     pub tasks: TaskCounts,
+    /// The errors that the last goal of the mission allows.
+    #[serde(default = "GoalOutcome::exact")]
+    pub allowed: PoseBound,
 }
 
 /// Numbers of tasks at the end of a run.
@@ -86,10 +87,11 @@ impl RunEnd {
             tasks,
             state: log.state.clone(),
             is_operated: setup.is_operated,
-            is_of_sensors: setup.is_of_sensors(),
-            has_laser_map: setup.robot.sight == RangeSource::Laser
-                && run.robot.grid().cells().contains(&Cell::Free),
+            of_sensors: setup.is_of_sensors().then(|| SensorsRun::of(run)),
             out_of_time: setup.is_out_of_time(log).then_some(setup.time_limit),
+            allowed: setup
+                .last_goal_task()
+                .map_or_else(GoalOutcome::exact, |task| allowed(&task, &setup.robot)),
         }
     }
 
@@ -112,18 +114,13 @@ fn docking_text(docking: &GoalApproachReport) -> String {
     format!("{motions} motions, {plans} plans, {restarts} broken off, {waits} waits, {time:.1} s; {end}")
 }
 
-/// Distance within which the goal counts as reached \[m\]. Source: ours.
-const GOAL_TOLERANCE_M: f64 = 0.05;
-/// Heading difference within which the goal counts as reached \[deg\]. Source: ours.
-const ALIGNED_DEG: f64 = 3.0;
-
 impl RunNumbers {
     /// The numbers of a run that has ended.
     pub fn of(setup: &RunSetup, run: &FinishedRun) -> Self {
         let log = &run.log;
         let against_goal = |pose| goal_error(setup.last_goal()?, pose).ok();
         Self {
-            goals: GoalOutcome::all(run),
+            goals: GoalOutcome::all(run, &setup.robot),
             goals_asked: (!setup.is_without_motion())
                 .then(|| setup.mission.tasks().iter().filter_map(RunSetup::goal_of).count()),
             goal_error: log.truths.last().and_then(|(_, truth)| against_goal(*truth)),
@@ -149,18 +146,18 @@ impl RunNumbers {
 
     /// Whether the end is near enough to the last goal; true without a goal.
     pub fn is_near(&self) -> bool {
-        self.judged_error().is_none_or(|error| error.distance < GOAL_TOLERANCE_M)
+        self.judged_error().is_none_or(|error| error.distance < self.end.allowed.distance)
     }
 
     /// Whether the heading is near enough to the last goal's; true without a goal.
     pub fn is_aligned(&self) -> bool {
-        self.judged_error().is_none_or(|error| error.dtheta.abs().to_degrees() < ALIGNED_DEG)
+        self.judged_error().is_none_or(|error| error.dtheta.abs() < self.end.allowed.heading)
     }
 
     /// Whether every goal was reached without a contact, in truth if it is known.
     pub fn is_success(&self) -> bool {
-        if self.end.is_of_sensors {
-            return !self.end.is_cut() && (self.tracked.ok > 0 || self.end.has_laser_map);
+        if let Some(sensors) = self.end.of_sensors {
+            return !self.end.is_cut() && sensors.failure(self.duration).is_none();
         }
         if self.end.is_operated {
             let is_done = self.end.tasks.done > 0 && self.end.tasks.left == 0;
@@ -177,13 +174,13 @@ impl RunNumbers {
     /// Goals that the robot reported as reached and missed in truth.
     fn goals_missed(&self) -> usize {
         let believed = self.goals.iter().filter(|goal| goal.end == TaskEnd::Done);
-        believed.filter(|goal| !goal.is_reached(GOAL_TOLERANCE_M, ALIGNED_DEG.to_radians())).count()
+        believed.filter(|goal| !goal.is_reached()).count()
     }
 
     /// Result of the run, in one sentence.
     pub fn verdict(&self) -> String {
-        if self.end.is_of_sensors {
-            return self.sensors_verdict();
+        if let Some(sensors) = self.end.of_sensors {
+            return self.sensors_verdict(sensors);
         }
         if self.is_success() {
             return match self.goals.iter().filter(|goal| goal.end == TaskEnd::Done).count() {
@@ -218,11 +215,11 @@ impl RunNumbers {
     }
 
     /// The verdict of a run on the sensors of a robot that something else drove.
-    fn sensors_verdict(&self) -> String {
-        match self.is_success() {
-            true => "Replayed: the robot had no mission; it located itself and mapped.".to_owned(),
-            false if self.end.is_cut() => "Failed: the run was ended early.".to_owned(),
-            false => "Failed: the robot tracked no image and drew no scan of a laser.".to_owned(),
+    fn sensors_verdict(&self, sensors: SensorsRun) -> String {
+        match sensors.failure(self.duration) {
+            _ if self.end.is_cut() => "Failed: the run was ended early.".to_owned(),
+            Some(failure) => format!("Failed: {failure}."),
+            None => "Replayed: the robot had no mission; it located itself and mapped.".to_owned(),
         }
     }
 
@@ -306,6 +303,7 @@ impl RunNumbers {
             .set("believed_error_m", self.believed_error.map(|e| e.distance))
             .set("believed_error_heading_rad", self.believed_error.map(|e| e.dtheta))
             .set("estimate_rmse_m", self.estimate_rmse)
+            .set("pose_lost_s", run.log.pose_lost_s)
             .set("path_length_m", self.path_length)
             .set("contacts", self.contacts)
             .set("duration_s", self.duration)

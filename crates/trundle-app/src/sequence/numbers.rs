@@ -20,7 +20,7 @@ pub fn sequence_rows(
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let c = run.counts;
     let mut rows = vec![
-        row("frames read", (c.ok + c.weak + c.dead_reckoned + c.lost).to_string()),
+        row("frames read", c.total().to_string()),
         row("frames unreadable, without depth", format!("{}, {}", run.unreadable.len(), input.unpaired())),
         row(
             "ok / weak / dead reckoned / lost",
@@ -99,7 +99,7 @@ pub fn summary(
         .set("camera_by_floor", input.floor_mount)
         .set("camera_readout_by_images_s", input.readout_by_images.map(|found| found.readout_s))
         .set("seed", request.seed)
-        .set("frames", c.ok + c.weak + c.dead_reckoned + c.lost)
+        .set("frames", c.total())
         .set("frames_unreadable", &run.unreadable)
         .set("frames_without_depth", input.unpaired())
         .set("frames_ok", c.ok)

@@ -212,7 +212,7 @@ impl SequenceRun {
             let cause = self.depth.unusable().unwrap_or_else(|| unmatched.to_owned());
             return Some(format!("no frame after the first was located: {cause}"));
         }
-        if self.tracked() == 1 && self.left_out.asked > 1 && !self.is_interrupted {
+        if self.counts.total() == 1 && self.left_out.asked > 1 && !self.is_interrupted {
             return Some(self.left_out.failure(self.unreadable.first()));
         }
         self.depth.problem().or_else(|| self.trajectory.failure())
@@ -229,12 +229,6 @@ impl SequenceRun {
     pub fn clock_tables(&self) -> [Vec<Vec<String>>; 2] {
         let whole = vec!["wall clock".to_owned(), format!("{:.1} s", self.seconds)];
         [vec![whole], stage_rows(&self.times)]
-    }
-
-    /// Number of images that were tracked.
-    fn tracked(&self) -> usize {
-        let TrackCounts { ok, weak, dead_reckoned, lost } = self.counts;
-        ok + weak + dead_reckoned + lost
     }
 
     /// Whether any frame after the first, which defines the frame, was located by its features.

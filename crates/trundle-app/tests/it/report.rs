@@ -22,6 +22,7 @@ fn goal(end: TaskEnd, error: Option<GoalError>) -> GoalOutcome {
         believed: off(0.01, 0.0),
         bound: None,
         before_restart: false,
+        allowed: GoalOutcome::exact(),
     }
 }
 
@@ -45,9 +46,9 @@ fn good() -> RunNumbers {
         end: RunEnd {
             state: DriveState::Arrived,
             is_operated: false,
-            is_of_sensors: false,
-            has_laser_map: false,
+            of_sensors: None,
             out_of_time: None,
+            allowed: GoalOutcome::exact(),
             tasks: TaskCounts { done: 1, left: 0 },
         },
     }
@@ -74,9 +75,9 @@ fn an_operated_run_is_a_success_only_when_something_was_done_and_nothing_is_open
         end: RunEnd {
             state: interrupted.clone(),
             is_operated: true,
-            is_of_sensors: false,
-            has_laser_map: false,
+            of_sensors: None,
             out_of_time: None,
+            allowed: GoalOutcome::exact(),
             tasks: TaskCounts { done, left },
         },
         ..good()
@@ -118,16 +119,16 @@ fn each_fault_is_named_in_the_verdict() {
 
 #[test]
 fn a_goal_is_reached_within_distance_and_turn_and_when_the_task_is_done() {
-    let reached = |end, error| goal(end, error).is_reached(0.05, 0.05);
+    let reached = |end, error| goal(end, error).is_reached();
     assert!(reached(TaskEnd::Done, off(0.04, 2.0)));
     assert!(!reached(TaskEnd::Done, off(0.06, 0.0)) && !reached(TaskEnd::Done, off(0.0, 4.0)));
     assert!(reached(TaskEnd::Done, None), "without truth the estimate decides");
     let off_by_estimate = GoalOutcome { believed: off(0.2, 0.0), ..goal(TaskEnd::Done, None) };
-    assert!(!off_by_estimate.is_reached(0.05, 0.05));
+    assert!(!off_by_estimate.is_reached());
     let given_up = || TaskEnd::GivenUp { reason: Reason::MovingObstacle };
     assert!(!reached(given_up(), off(0.0, 0.0)));
     let earlier = GoalOutcome { before_restart: true, ..goal(TaskEnd::Done, None) };
-    assert!(earlier.is_reached(0.05, 0.05), "of a run before a restart only the estimate is known");
+    assert!(earlier.is_reached(), "of a run before a restart only the estimate is known");
 }
 
 #[test]

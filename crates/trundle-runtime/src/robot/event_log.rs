@@ -35,9 +35,10 @@ impl DroppedImage {
     }
 }
 
-/// Logs a silent fault of wheels or gyro, or its end.
-pub(super) fn sensor_change(at: Stamp, change: SensorChange) {
-    tracing::warn!("{:.3} s: {}", at.as_secs(), change.text());
+/// Logs a silent fault of wheels or gyro, or its end. `count`: number of the fault.
+pub(super) fn sensor_change(at: Stamp, (change, count): (SensorChange, u32)) {
+    let times = if count > 1 { format!(" ({count} times so far)") } else { String::new() };
+    tracing::warn!("{:.3} s: {}{times}", at.as_secs(), change.text());
 }
 
 /// Logs impossible readings of the wheels: the first, the second, the fourth and so on.

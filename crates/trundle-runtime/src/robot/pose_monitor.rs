@@ -100,7 +100,8 @@ impl Robot {
         PoseCertainty::of(&self.localizer.estimate(), self.lost_sigma)
     }
 
-    fn is_lost(&self) -> bool {
+    /// Whether the pose is too uncertain to drive, or unknown.
+    pub(super) fn is_lost(&self) -> bool {
         self.pose_certainty().is_lost()
     }
 

@@ -40,8 +40,28 @@ pub(super) struct SensorWatch {
     newest: Stamp,
     /// Stamp of the newest gyro reading; before any, of the first wheel reading.
     gyro: Option<Stamp>,
-    is_gyro_missing: bool,
-    are_wheels_unresponsive: bool,
+    gyro_missing: SilentFault,
+    wheels_unresponsive: SilentFault,
+}
+
+/// A fault that may come and go. The first, the second, the fourth and so on are logged, each with its end, so that a sensor with a low rate
+/// does not fill the log.
+#[derive(Debug, Default)]
+struct SilentFault {
+    is_present: bool,
+    count: u32,
+}
+
+impl SilentFault {
+    /// Number of the fault that begins or ends, if that is logged.
+    fn change(&mut self, is_present: bool) -> Option<u32> {
+        if is_present == self.is_present {
+            return None;
+        }
+        self.is_present = is_present;
+        self.count += u32::from(is_present);
+        Some(self.count).filter(|count| count.is_power_of_two())
+    }
 }
 
 impl SensorWatch {
@@ -60,24 +80,18 @@ impl SensorWatch {
         self.gyro = Some(stamp);
     }
 
-    /// The changes at a wheel reading.
+    /// The changes at a wheel reading, each with the number of its fault.
     pub(super) fn on_wheels(
         &mut self,
         now: Stamp,
         are_unresponsive: bool,
-    ) -> impl Iterator<Item = SensorChange> + use<> {
+    ) -> impl Iterator<Item = (SensorChange, u32)> + use<> {
         let is_missing = now - *self.gyro.get_or_insert(now) > GYRO_MISSING_S;
-        let gyro = (is_missing != self.is_gyro_missing).then_some(if is_missing {
-            SensorChange::GyroMissing
-        } else {
-            SensorChange::GyroBack
-        });
-        let wheels = (are_unresponsive != self.are_wheels_unresponsive).then_some(if are_unresponsive {
-            SensorChange::WheelsUnresponsive
-        } else {
-            SensorChange::WheelsBack
-        });
-        (self.is_gyro_missing, self.are_wheels_unresponsive) = (is_missing, are_unresponsive);
+        let gyro = if is_missing { SensorChange::GyroMissing } else { SensorChange::GyroBack };
+        let wheels =
+            if are_unresponsive { SensorChange::WheelsUnresponsive } else { SensorChange::WheelsBack };
+        let gyro = self.gyro_missing.change(is_missing).map(|count| (gyro, count));
+        let wheels = self.wheels_unresponsive.change(are_unresponsive).map(|count| (wheels, count));
         gyro.into_iter().chain(wheels)
     }
 }
@@ -96,7 +110,7 @@ mod tests {
             if !(50..150).contains(&i) {
                 watch.on_gyro(now);
             }
-            changes.extend(watch.on_wheels(now, (100..120).contains(&i)));
+            changes.extend(watch.on_wheels(now, (100..120).contains(&i)).map(|(change, _)| change));
         }
         assert_eq!(
             changes,
@@ -116,6 +130,21 @@ mod tests {
             watch.on_wheels(Stamp::default().after(s), false).collect::<Vec<_>>()
         };
         assert!(changes(&mut watch, 5.0).is_empty() && changes(&mut watch, 5.4).is_empty());
-        assert_eq!(changes(&mut watch, 5.6), [SensorChange::GyroMissing]);
+        assert_eq!(changes(&mut watch, 5.6), [(SensorChange::GyroMissing, 1)]);
+    }
+
+    #[test]
+    fn a_gyro_with_one_reading_a_second_does_not_fill_the_log() {
+        let mut watch = SensorWatch::default();
+        let mut changes = Vec::new();
+        for i in 0..3000_i64 {
+            let now = Stamp::from_nanos(20_000_000 * i);
+            if i % 50 == 0 {
+                watch.on_gyro(now);
+            }
+            changes.extend(watch.on_wheels(now, false));
+        }
+        let counts: Vec<_> = changes.iter().map(|(_, count)| *count).collect();
+        assert_eq!(counts, [1, 1, 2, 2, 4, 4, 8, 8, 16, 16, 32, 32]);
     }
 }
