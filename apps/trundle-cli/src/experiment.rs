@@ -59,9 +59,7 @@ fn run_from(which: &Experiment, origin: &RunOrigin) -> Result<Outcome, AppError>
         }),
         Experiment::RealTime(args) => run_real_time(args, origin),
         Experiment::Corridor(a) => in_folder(&a.out, &a.common, None, origin, |_, _| corridor::run()),
-        Experiment::Merge(_) => {
-            Err(AppError::Input("a merge of merges, expected the shards of an experiment".to_owned()))
-        }
+        Experiment::Merge(_) => Err(AppError::input("a merge of merges, expected shards of runs")),
     }
 }
 

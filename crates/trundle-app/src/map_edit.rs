@@ -8,6 +8,7 @@ mod diff_picture;
 mod input;
 mod merge;
 mod output;
+mod room_zones;
 mod rooms;
 mod rooms_picture;
 mod rotate;

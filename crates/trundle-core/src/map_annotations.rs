@@ -1,7 +1,7 @@
 //! Annotations of a map: zones and named places.
 
 use crate::zone::require_name;
-use crate::{Invalid, MAX_COORDINATE_M, Pose2, Zone, require_in};
+use crate::{Invalid, MAX_COORDINATE_M, Pose2, Vector2, Zone, require_in};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
@@ -49,6 +49,17 @@ impl MapAnnotations {
     #[must_use]
     pub fn pose_of(&self, name: &str) -> Option<Pose2> {
         self.places.iter().find(|place| place.name == name).map(|place| place.pose)
+    }
+
+    /// The zones and places in another map frame; `frame` is the pose of the present frame in it.
+    #[must_use]
+    pub fn moved(mut self, frame: Pose2) -> Self {
+        for corner in self.zones.iter_mut().flat_map(|zone| &mut zone.outline) {
+            let at = frame.transform(Vector2::new(corner[0], corner[1]));
+            *corner = [at.x, at.y];
+        }
+        self.places.iter_mut().for_each(|place| place.pose = frame * place.pose);
+        self
     }
 
     /// The annotations, their numbers checked.

@@ -95,7 +95,9 @@ impl Zone {
         self.corners().iter().fold(none, |(low, high), corner| (low.inf(corner), high.sup(corner)))
     }
 
-    fn area(&self) -> f64 {
+    /// Area within the outline \[m^2\].
+    #[must_use]
+    pub fn area(&self) -> f64 {
         let corners = self.corners();
         let next = corners.iter().cycle().skip(1);
         (corners.iter().zip(next).map(|(a, b)| a.perp(b)).sum::<f64>() / 2.0).abs()

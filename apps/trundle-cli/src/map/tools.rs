@@ -71,6 +71,9 @@ pub struct RotateArgs {
     /// The turn, counter-clockwise, deg.
     #[arg(long, value_name = "DEG", conflicts_with = "to", value_parser = NumberArg(NumberText::any("deg")), allow_negative_numbers = true)]
     pub by: Option<f64>,
+    /// Zones and places of the map, GeoJSON, to be turned with it.
+    #[arg(long, value_name = "FILE")]
+    pub zones: Option<PathBuf>,
     /// The results.
     #[command(flatten)]
     pub result: ResultArgs,
@@ -122,12 +125,12 @@ pub struct MergeArgs {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: trundle map rooms out/map/map.yaml --places places.toml --out out/rooms\n\n\
-    Writes rooms.geojson (polygons with name and area_m2), rooms.png and summary.json."
+    Writes rooms.geojson (polygons with name and area_m2), zones.geojson (rooms as areas and places), rooms.png and summary.json."
 )]
 pub struct RoomsArgs {
     /// The map, in map_server's format.
     pub map: PathBuf,
-    /// Named places, which name the rooms they lie in: TOML, one table per place with x, y, heading_deg.
+    /// Named places, which name the rooms they lie in: TOML, one table per place with x, y, heading_deg, or GeoJSON.
     #[arg(long, value_name = "FILE")]
     pub places: Option<PathBuf>,
     /// Width up to which an opening divides rooms, m.
@@ -151,7 +154,7 @@ pub fn run(tool: &MapTool) -> Result<Outcome, AppError> {
             crop_map(&args.map, args.to.map_or(CropExtent::Known, CropExtent::Box), folder)
         }),
         MapTool::Rotate(args) => written(&args.result, |folder| {
-            rotate_map(&args.map, args.by.map_or(RotationTarget::Walls, RotationTarget::Degrees), folder)
+            rotate_map(&args.map, args.zones.as_deref(), args.by.into(), folder)
         }),
         MapTool::Diff(args) => written(&args.result, |folder| {
             let pose = if args.align { DiffPose::Search } else { DiffPose::At(args.at.0) };

@@ -28,7 +28,7 @@ pub struct PlanArgs {
         required = true
     )]
     pub goal: Vec<PlaceArg>,
-    /// Named places: TOML, one table per place with x, y, heading_deg.
+    /// Named places: TOML, one table per place with x, y, heading_deg, or GeoJSON.
     #[arg(long, value_name = "FILE")]
     pub places: Option<PathBuf>,
     /// Keep-out mask in Nav2's format: black is forbidden, grey (mode scale) has extra costs.

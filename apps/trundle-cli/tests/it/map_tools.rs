@@ -3,8 +3,8 @@
 use crate::program::{refusal, shared, summary, text, trundle};
 use std::fs;
 use std::path::{Path, PathBuf};
-use trundle::core::{Cell, OccupancyGrid, Vector2};
-use trundle::io::read_map;
+use trundle::core::{Cell, OccupancyGrid, Pose2, Vector2};
+use trundle::io::{read_annotations, read_map};
 
 /// Runs a tool that succeeds; its `summary.json`.
 fn tool(args: &[&str], out: &Path) -> serde_json::Value {
@@ -173,9 +173,23 @@ fn a_house_has_rooms_with_names() {
     assert_eq!(corner[0], corner[corner.as_array().unwrap().len() - 1], "rings are closed");
     assert!(fs::read(out.join("rooms.png")).unwrap().starts_with(b"\x89PNG"));
     let places = scratch.path().join("places.toml");
-    fs::write(&places, "[kitchen]\nx = 4\ny = 2\nheading_deg = 0\n").unwrap();
+    fs::write(&places, "[kitchen]\nx = 4\ny = 2\nheading_deg = 90\n").unwrap();
     let named = tool(&["rooms", text(&map), "--places", text(&places)], &out);
     assert!(named["rooms"].to_string().contains("kitchen"), "{named}");
+    let zones = read_annotations(&out.join("zones.geojson")).unwrap();
+    assert_eq!((zones.zones.len(), zones.places.len()), (rooms.len(), rooms.len()));
+    let kitchen = zones.pose_of("kitchen").unwrap();
+    assert!(
+        kitchen.distance(&Pose2::new(4.0, 2.0, 0.0)) < 1e-6
+            && (kitchen.theta.to_degrees() - 90.0).abs() < 1e-3
+    );
+    let (again, turned) = (scratch.path().join("again"), scratch.path().join("turned"));
+    let written = out.join("zones.geojson");
+    let same = tool(&["rooms", text(&map), "--places", text(&written)], &again);
+    assert_eq!(same["rooms"], named["rooms"], "zones name the rooms they were made of");
+    tool(&["rotate", text(&map), "--by=90", "--zones", text(&written)], &turned);
+    let place = read_annotations(&turned.join("zones.geojson")).unwrap().pose_of("kitchen").unwrap();
+    assert!(place.distance(&Pose2::new(-2.0, 4.0, 0.0)) < 1e-6, "{place:?}");
     let none = refusal(&["map", "rooms", text(&map), "--min-area=900", "--out", text(&out)]);
     assert!(none.contains("no room") && none.contains("--min-area"), "{none}");
 }

@@ -2,12 +2,13 @@
 
 use super::input::{read_upright, refused};
 use super::output::{EditedMap, write_pictured};
+use super::room_zones::room_annotations;
 use super::rooms_picture::rooms_picture;
 use crate::AppError;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use trundle_core::{Pose2, Vector2};
-use trundle_io::{NamedArea, OutputFolder, Summary, areas_text, read_places};
+use trundle_io::{NamedArea, OutputFolder, Summary, annotations_text, areas_text, read_places};
 use trundle_mapping::map_edit::{MapRooms, Room, RoomLimits, map_rooms};
 
 /// A map to be divided into rooms.
@@ -35,7 +36,7 @@ impl RoomsRequest {
     }
 }
 
-/// Divides a map into rooms, and writes the folder: `rooms.geojson`, `rooms.png` and `summary.json`.
+/// Divides a map into rooms, and writes the folder: `rooms.geojson`, `zones.geojson`, `rooms.png` and `summary.json`.
 ///
 /// # Errors
 /// When a file cannot be read or written, a limit is out of range, or the map has no room.
@@ -53,6 +54,8 @@ pub fn divide_map(request: &RoomsRequest, folder: OutputFolder) -> Result<Edited
     let areas: Vec<NamedArea> =
         names.iter().zip(found.rooms()).map(|(name, room)| area(name, room)).collect();
     folder.write("rooms.geojson", areas_text(&areas).as_bytes())?;
+    let zones = room_annotations(found.rooms(), &names, &places);
+    folder.write("zones.geojson", annotations_text(&zones).as_bytes())?;
     let total: f64 = found.rooms().iter().map(|room| room.area_m2).sum();
     let mut summary = Summary::new("map rooms");
     let list: Vec<_> = areas.iter().map(|area| (&area.name, area.area_m2)).collect();

@@ -4,7 +4,8 @@ use super::input::{read_picture, refused};
 use super::output::{EditedMap, row, size_row, write_edited};
 use crate::AppError;
 use std::path::Path;
-use trundle_io::{OutputFolder, PictureMap, Summary};
+use trundle_core::Pose2;
+use trundle_io::{OutputFolder, PictureMap, Summary, annotations_text, read_annotations};
 use trundle_mapping::map_edit::{WallDirection, rotated, wall_direction};
 
 /// Sharpness of the walls in their direction below which a map has no direction, as a multiple of the mean over all directions.
@@ -26,12 +27,25 @@ impl RotationTarget {
         [("walls", "Walls become parallel to the axes, by 45 deg at most", Self::Walls)];
 }
 
-/// Writes the folder of a rotated map.
+/// A turn \[deg\], or the walls.
+impl From<Option<f64>> for RotationTarget {
+    fn from(degrees: Option<f64>) -> Self {
+        degrees.map_or(Self::Walls, Self::Degrees)
+    }
+}
+
+/// Writes the folder of a rotated map, with the `zones` of the map, a GeoJSON file, turned with it.
 ///
 /// # Errors
-/// When the map cannot be read or shows no direction of walls, or a file cannot be written.
-pub fn rotate_map(file: &Path, target: RotationTarget, folder: OutputFolder) -> Result<EditedMap, AppError> {
+/// When a file cannot be read or written, or the map shows no direction of walls.
+pub fn rotate_map(
+    file: &Path,
+    zones: Option<&Path>,
+    target: RotationTarget,
+    folder: OutputFolder,
+) -> Result<EditedMap, AppError> {
     let map = read_picture(file)?;
+    let zones = zones.map(read_annotations).transpose()?;
     let mut summary = Summary::new("map rotate");
     let mut rows = Vec::new();
     let turn = match target {
@@ -45,6 +59,10 @@ pub fn rotate_map(file: &Path, target: RotationTarget, folder: OutputFolder) -> 
     };
     let grid = rotated(&map.grid, map.map_from_grid, turn).map_err(refused(file))?;
     summary.set("turn_deg", turn.to_degrees());
+    if let Some(zones) = zones {
+        let turned = zones.moved(Pose2::new(0.0, 0.0, turn));
+        folder.write("zones.geojson", annotations_text(&turned).as_bytes())?;
+    }
     rows.insert(0, row("turn about the origin of the map", format!("{:.2} deg", turn.to_degrees())));
     rows.push(size_row(&grid));
     write_edited(&grid, &mut summary, rows, folder)

@@ -1,5 +1,6 @@
-//! Named places: a TOML file.
+//! Named places: a TOML file, or the places of a GeoJSON file of zones.
 
+use super::annotations::read_annotations;
 use crate::files::read_text;
 use crate::toml_text::parse_toml;
 use crate::{Expected, IoError};
@@ -30,9 +31,18 @@ struct Place {
 /// heading_deg = 0
 /// ```
 ///
+/// A file whose name ends with `.geojson` or `.json` is read as zones and places, as the live page and `trundle map rooms` write them.
+///
 /// # Errors
 /// When the file cannot be read, a field is missing, unknown, or no finite number (at most 1e6), or a name is empty.
 pub fn read_places(path: &Path) -> Result<BTreeMap<String, Pose2>, IoError> {
+    if path
+        .extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case("geojson") || end.eq_ignore_ascii_case("json"))
+    {
+        let places = read_annotations(path)?.places;
+        return Ok(places.into_iter().map(|place| (place.name, place.pose)).collect());
+    }
     Expected::Toml.check(path)?;
     let text = read_text(path)?;
     let places: BTreeMap<String, Place> = parse_toml(path, &text)?;
@@ -53,7 +63,9 @@ fn checked(path: &Path, name: String, place: &Place) -> Result<(String, Pose2), 
 
 #[cfg(test)]
 mod tests {
+    use super::super::annotations::annotations_text;
     use super::*;
+    use trundle_core::{MapAnnotations, NamedPlace};
 
     fn read(text: &str) -> Result<BTreeMap<String, Pose2>, String> {
         let file = tempfile::NamedTempFile::new().unwrap();
@@ -70,6 +82,19 @@ mod tests {
         assert_eq!(places.keys().collect::<Vec<_>>(), ["dock", "north door"]);
         assert_eq!(places["dock"], Pose2::new(1.0, 0.5, std::f64::consts::FRAC_PI_2));
         assert!(read("").unwrap().is_empty());
+    }
+
+    #[test]
+    fn places_of_the_live_page_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("zones.geojson");
+        let place = NamedPlace { id: 3, name: "desk".to_owned(), pose: Pose2::new(1.0, 2.0, 0.5) };
+        let zones = MapAnnotations { places: vec![place], ..MapAnnotations::default() };
+        std::fs::write(&file, annotations_text(&zones)).unwrap();
+        let places = read_places(&file).unwrap();
+        assert!(places["desk"].distance(&Pose2::new(1.0, 2.0, 0.5)) < 1e-9 && places.len() == 1);
+        std::fs::write(&file, "{}").unwrap();
+        assert!(read_places(&file).unwrap_err().to_string().contains("FeatureCollection"));
     }
 
     #[test]
