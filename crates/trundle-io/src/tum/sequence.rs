@@ -133,7 +133,7 @@ impl TumSequence {
         }
         let metres = decode_depth_file(&read_bytes(&depth_path)?, self.depth_scale)
             .map_err(IoError::image(&depth_path))?;
-        RgbdImage::new(color.stamp, pixels, metres).map_err(IoError::field(&depth_path))
+        RgbdImage::of_registered(color.stamp, pixels, metres).map_err(IoError::field(&depth_path))
     }
 }
 

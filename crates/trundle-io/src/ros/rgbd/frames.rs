@@ -139,7 +139,7 @@ impl RosFrame {
     /// When an image is damaged, of an encoding that is not read, or their sizes differ.
     pub fn decode(&self) -> Result<RgbdImage, CodecError> {
         let (color, depth) = (self.color.color()?, self.depth.depth(self.depth_scale)?);
-        Ok(RgbdImage::new(self.color.stamp, color, depth)?)
+        Ok(RgbdImage::of_registered(self.color.stamp, color, depth)?)
     }
 
     /// The bytes to record for the decoded `image`: an unchanged JPEG, and depth in millimetres.
