@@ -2,8 +2,8 @@
 //! plan_bench [-- --csv PAIRS.csv] [--seed N]`.
 //!
 //! Each map has its own queries, and random queries between connected places. Each query runs 20 times on an up-to-date distance field. The
-//! result is the best CPU time of the thread, which is meaningful on a busy machine too. `--only-plans`, `--only-updates`, `--only-large`
-//! and `--only-printed` select one part. Every trajectory is evaluated by the tests' independent checker.
+//! result is the best CPU time of the thread, which is meaningful on a busy machine too. `--only-plans`, `--only-updates`, `--only-large`,
+//! `--only-outlines` and `--only-printed` select one part. Every trajectory is evaluated by the tests' independent checker.
 
 #![expect(
     clippy::print_stdout,
@@ -15,6 +15,9 @@
 mod barn;
 #[path = "../../tests/it/nav_data.rs"]
 mod nav_data;
+#[path = "../../tests/it/outline_judge.rs"]
+mod outline_judge;
+mod outlines;
 mod shortest;
 #[path = "../../tests/it/support.rs"]
 #[expect(dead_code, reason = "shared with the tests")]
@@ -55,6 +58,9 @@ fn main() {
     }
     if std::env::args().any(|word| word == "--only-large") {
         return large();
+    }
+    if std::env::args().any(|word| word == "--only-outlines") {
+        return outlines::print(&data);
     }
     if std::env::args().any(|word| word == "--only-printed") {
         return printed(&data);

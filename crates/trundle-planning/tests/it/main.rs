@@ -17,6 +17,7 @@ mod masks;
 mod moving;
 mod multi_goal;
 mod nav_data;
+mod outline_judge;
 mod replanning;
 mod rules;
 mod settings;
