@@ -50,6 +50,7 @@ pub fn map_rows(log: &LaserLog, run: &LaserMapRun) -> Vec<Vec<String>> {
     rows.extend([
         row("scans", counts.in_log.to_string()),
         row("scans read", counts.read.to_string()),
+        row("entries that could not be used", log.skipped.len().to_string()),
         row("scans without a return", log.scans_without_return().to_string()),
         row("invalid ranges", log.bad_ranges.to_string()),
         row("processed", counts.processed.to_string()),

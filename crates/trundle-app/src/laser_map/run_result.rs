@@ -11,8 +11,9 @@ const MAX_SHARE_WITHOUT_OVERLAP: f64 = 0.5;
 /// Share of the scans that pauses left out \[1\]. Above it the run missed its goal or a limit. Source: ours.
 const MAX_SHARE_LEFT_OUT: f64 = 0.1;
 
-/// Share of the scans of a log that must be usable \[1\]. Below it the run missed its goal. Source: ours.
-const MIN_SHARE_USED: f64 = 0.1;
+/// Share of the scans of a log that must be usable \[1\]. Below it the run missed its goal: the map shows the smaller part of the drive.
+/// Source: ours.
+const MIN_SHARE_USED: f64 = 0.5;
 
 /// The result of a log.
 #[derive(Debug)]
@@ -86,7 +87,7 @@ fn of_one_time(log: &LaserLog) -> Option<String> {
     ))
 }
 
-/// The failure of a log of which hardly a scan could be used.
+/// The failure of a log of which the smaller part of the scans could be used.
 fn skipped(log: &LaserLog, counts: &ScanCounts, is_stopped: bool) -> Option<String> {
     let (used, all) = (counts.in_log, counts.in_log + log.skipped.len());
     let first = log.skipped.first()?;
