@@ -29,8 +29,8 @@ impl AcceptFailures {
         let new = Failures { logged: now, unlogged: 0 };
         let before = self.0.insert(error.raw_os_error(), new).map_or(0, |known| known.unlogged);
         Some(format!(
-            "{server}: a connection is not accepted: {error}; {before} more since the last such line. The server goes on. If files are \
-             too many, raise their limit (ulimit -n; LimitNOFILE= of a service)"
+            "{server}: a connection is not accepted: {error}; {before} more since the last such line. The server goes on. With too many \
+             open files, raise their limit (ulimit -n; LimitNOFILE= of a service)"
         ))
     }
 }
