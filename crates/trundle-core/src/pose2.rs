@@ -1,6 +1,7 @@
 //! Poses in the plane, SE(2): composition, inverse, exponential and logarithm.
 
 use crate::{Twist2, Vector2, Vector3, wrap_angle};
+use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use std::ops::Mul;
 
@@ -68,6 +69,13 @@ impl Pose2 {
         let (a, b) = sinc_pair(self.theta);
         let scale = 1.0 / (a * a + b * b);
         Vector3::new((a * self.x + b * self.y) * scale, (a * self.y - b * self.x) * scale, self.theta)
+    }
+
+    /// The adjoint of SE(2), tangents (x m, y m, theta rad): how a right perturbation before the pose appears behind it,
+    /// `pose exp(x) = exp(adjoint x) pose` (Sola et al. 2018, eq. 159).
+    pub fn adjoint(&self) -> Matrix3<f64> {
+        let (s, c) = self.theta.sin_cos();
+        Matrix3::new(c, -s, self.y, s, c, -self.x, 0.0, 0.0, 1.0)
     }
 
     /// The pose after `dt` seconds of a constant twist: the exact arc.
@@ -140,6 +148,12 @@ mod tests {
         #[test]
         fn exp_undoes_log(a in any_pose()) {
             prop_assert!(close(Pose2::exp(a.log()), a));
+        }
+
+        #[test]
+        fn the_adjoint_moves_a_perturbation_to_the_other_side(a in any_pose(), b in any_pose()) {
+            let step = b.log() * 1e-3;
+            prop_assert!(close(a * Pose2::exp(step), Pose2::exp(a.adjoint() * step) * a));
         }
     }
 

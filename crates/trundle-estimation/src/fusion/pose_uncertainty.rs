@@ -1,6 +1,6 @@
 //! Uncertainty of a pose: an independent part, and the part that follows from the scale of the turns.
 
-use crate::planar::{adjoint, symmetric};
+use crate::planar::symmetric;
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 
@@ -25,12 +25,12 @@ impl PoseUncertainty {
 
     /// The uncertainty of a pose in the map as that of the map frame: a displacement `exp(e) * pose`.
     pub(crate) fn in_map(&self, pose: &Pose2) -> Self {
-        self.transformed(&adjoint(pose))
+        self.transformed(&pose.adjoint())
     }
 
     /// The inverse of [`PoseUncertainty::in_map`]; also the uncertainty after the motion `pose`, without its own noise.
     pub(crate) fn at_pose(&self, pose: &Pose2) -> Self {
-        self.transformed(&adjoint(&pose.inverse()))
+        self.transformed(&pose.inverse().adjoint())
     }
 
     fn transformed(&self, by: &Matrix3<f64>) -> Self {

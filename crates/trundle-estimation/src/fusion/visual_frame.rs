@@ -4,7 +4,7 @@ use crate::{
     fusion::belief::{Belief, Measurement},
     fusion::config::LocalizerConfig,
     fusion::correction::{VisualPose, VisualQuality},
-    planar::{adjoint, planar_covariance, symmetric},
+    planar::{planar_covariance, symmetric},
 };
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -56,7 +56,7 @@ struct Anchor {
 impl Anchor {
     /// The anchor's covariance as that of a base pose in its map, right perturbation.
     fn covariance_at(&self, pose: &Pose2) -> Matrix3<f64> {
-        let to_base = adjoint(&pose.inverse());
+        let to_base = pose.inverse().adjoint();
         to_base * self.covariance * to_base.transpose()
     }
 }
@@ -101,7 +101,7 @@ impl VisualFrame {
     pub(crate) fn anchor(&mut self, belief: &Belief, visual: &VisualPose) {
         let map_from_camera = Pose3::from_pose2(belief.pose) * self.base_from_camera;
         let map_from_visual = (map_from_camera * visual.visual_from_camera.inverse()).renormalized();
-        let to_map = adjoint(&belief.pose);
+        let to_map = belief.pose.adjoint();
         let covariance = symmetric(to_map * belief.covariance() * to_map.transpose());
         self.current = visual.map;
         self.anchors.insert(visual.map, Anchor { map_from_visual, covariance });
@@ -143,7 +143,7 @@ impl VisualFrame {
             return;
         }
         let (innovation, _) = before.innovation(measurement);
-        let to_base = adjoint(&measurement.pose.inverse());
+        let to_base = measurement.pose.inverse().adjoint();
         let Some(spread) = symmetric(before.covariance() + measurement.noise).cholesky() else { return };
         let gain = anchor.covariance * to_base.transpose() * spread.inverse();
         // An anchor with an error ahead gives measured poses the same error.

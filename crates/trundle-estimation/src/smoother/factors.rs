@@ -7,7 +7,7 @@ use super::state::{
     ERROR_PLACE, FIRST_ANCHOR_PLACE, POSE_PLACE,
 };
 use crate::odometry_config::OdometryConfig;
-use crate::planar::{adjoint, inverse_left_jacobian, inverse_right_jacobian, right_jacobian};
+use crate::planar::{inverse_left_jacobian, inverse_right_jacobian, right_jacobian};
 use nalgebra::{Matrix3, RowSVector, SMatrix, SVector, Vector3};
 use trundle_core::{Pose2, wrap_angle};
 use trundle_optim::ArrowSystem;
@@ -48,11 +48,11 @@ impl VisualFactor {
         residual.z = wrap_angle(residual.z);
         let turn = rotation(visual_from_base.theta);
         let mut by_chain = SMatrix::<f64, 3, CHAIN_SIZE>::zeros();
-        by_chain.fixed_columns_mut::<3>(POSE_PLACE).copy_from(&-(turn * adjoint(&back)));
+        by_chain.fixed_columns_mut::<3>(POSE_PLACE).copy_from(&-(turn * back.adjoint()));
         by_chain.fixed_columns_mut::<3>(ERROR_PLACE).copy_from(&-Matrix3::identity());
         let mut by_border = SMatrix::<f64, 3, BORDER_SIZE>::zeros();
         by_border.set_column(DELAY_PLACE, &(turn * self.velocity));
-        let by_anchor = turn * adjoint(&visual_from_base.inverse());
+        let by_anchor = turn * visual_from_base.inverse().adjoint();
         by_border.fixed_columns_mut::<3>(FIRST_ANCHOR_PLACE + 3 * self.slot).copy_from(&by_anchor);
         Unary { residual, by_chain, by_border }
     }
@@ -230,7 +230,7 @@ pub(crate) fn linearise_motion(
     let measured = motion.motion * Pose2::exp(off);
     let residual = (measured.inverse() * from.pose.inverse() * to.pose).log();
     let by_to = inverse_right_jacobian(&residual);
-    let by_from = -by_to * adjoint(&(to.pose.inverse() * from.pose));
+    let by_from = -by_to * (to.pose.inverse() * from.pose).adjoint();
     let by_parameters = -inverse_left_jacobian(&residual) * right_jacobian(&off) * motion.by_parameters;
     MotionResidual { residual, by_from, by_to, by_parameters }
 }

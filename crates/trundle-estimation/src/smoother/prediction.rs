@@ -9,7 +9,7 @@ use super::state::{
     POSE_PLACE,
 };
 use crate::odometry_config::OdometryConfig;
-use crate::planar::{adjoint, right_jacobian, symmetric};
+use crate::planar::{right_jacobian, symmetric};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use trundle_core::Pose2;
 use trundle_optim::ArrowCovariance;
@@ -106,6 +106,6 @@ fn moved_pose(
     let off: SVector<f64, 3> = motion.by_parameters * (parameters(from.bias, border) - motion.at);
     let moved = motion.motion * Pose2::exp(off);
     let (mut by_chain, by_border) = spread(&(right_jacobian(&off) * motion.by_parameters));
-    by_chain.fixed_columns_mut::<3>(POSE_PLACE).copy_from(&adjoint(&moved.inverse()));
+    by_chain.fixed_columns_mut::<3>(POSE_PLACE).copy_from(&moved.inverse().adjoint());
     (from.pose * moved, by_chain, by_border)
 }

@@ -4,7 +4,7 @@ use super::state::{BIAS_PLACE, BORDER_SIZE, BorderState, CHAIN_SIZE, SCALE_PLACE
 use crate::odometry::motion_increment::MotionIncrement;
 use crate::odometry_config::OdometryConfig;
 use crate::odometry_noise::{Step, of_step};
-use crate::planar::{adjoint, right_jacobian, symmetric};
+use crate::planar::{right_jacobian, symmetric};
 use nalgebra::{Matrix3, RowSVector, SMatrix, SVector, Vector3};
 use trundle_core::Pose2;
 
@@ -129,7 +129,7 @@ impl Preintegrated {
         tangent_by.set_row(2, &turn_by);
         let tangent = Vector3::new(distance, 0.0, turn);
         let step = Pose2::exp(tangent);
-        let back = adjoint(&step.inverse());
+        let back = step.inverse().adjoint();
         self.motion = self.motion * step;
         self.by_parameters = back * self.by_parameters + right_jacobian(&tangent) * tangent_by;
         let own = of_step(config, &step_of(config, part, distance, turn)) + part.unobserved;

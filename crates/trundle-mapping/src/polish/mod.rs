@@ -20,7 +20,6 @@ mod overlap;
 mod pair;
 mod rounds;
 mod surface_scan;
-mod system;
 
 pub(crate) use rounds::polished;
 

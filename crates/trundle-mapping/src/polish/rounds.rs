@@ -5,8 +5,7 @@ use crate::particle_config::ParticleConfig;
 use crate::polish::overlap::pairs;
 use crate::polish::pair::{MatchModel, PairEquations};
 use crate::polish::surface_scan::SurfaceScan;
-use crate::polish::system::System;
-use crate::pose_graph::Constraint;
+use crate::pose_graph::{Constraint, PoseEquations};
 use crate::scan_match::scan_points::ScanPoints;
 use rayon::prelude::*;
 use trundle_core::{Pose2, Vector2};
@@ -24,6 +23,9 @@ const MAX_CONTRADICTED_RATIO: f64 = 0.3;
 /// Fraction of the information of the filter's steps and loops that counts \[1\]. They come from the same scans as the pairs, and have a
 /// say only in directions that no pair determines. Source: ours.
 const FILTER_INFORMATION_SHARE: f64 = 0.1;
+
+/// Largest number of blocks of the factor, 72 bytes each: 72 MB. Source: ours.
+const MAX_BLOCKS: usize = 1_000_000;
 
 /// A pair of scans: numbers of the later and of the earlier one.
 type Pair = (usize, usize);
@@ -70,9 +72,7 @@ fn model(config: &ParticleConfig, scale: f64) -> MatchModel {
 fn surface_scans(config: &ParticleConfig, history: &ScanHistory) -> Vec<SurfaceScan> {
     let unpacked = |points: &mut ScanPoints, k: usize| {
         history.scans[k].unpack_into(config, points);
-        let (x, y) = points.rays.origin;
-        let origin = Vector2::new(f64::from(x), f64::from(y)) * config.map.resolution;
-        SurfaceScan::new(origin, &points.hits(config))
+        SurfaceScan::new(points.origin(config), &points.hits(config))
     };
     (0..history.scans.len()).into_par_iter().map_init(ScanPoints::default, unpacked).collect()
 }
@@ -93,20 +93,26 @@ fn step(
     let matches = matches(scans, poses, &pairs, model);
     let both = pairs.len();
     pairs.extend(constraints.iter().map(Constraint::poses));
-    let mut system = System::new(poses.len(), &pairs)?;
+    let mut equations = PoseEquations::new_within(poses.len(), &pairs, MAX_BLOCKS)?;
     for (&(later, earlier), [there, back]) in pairs[..both].iter().zip(&matches) {
         if is_consistent(there, back) {
             let earlier_from_later = poses[earlier].inverse() * poses[later];
-            system.add_pair((later, earlier), earlier_from_later, there);
-            system.add_pair((earlier, later), earlier_from_later.inverse(), back);
+            add_pair(&mut equations, (later, earlier), earlier_from_later, there);
+            add_pair(&mut equations, (earlier, later), earlier_from_later.inverse(), back);
         }
     }
     for constraint in constraints {
-        system.add_constraint(poses, constraint, FILTER_INFORMATION_SHARE);
+        let information = constraint.information() * FILTER_INFORMATION_SHARE;
+        equations.add_constraint(poses, constraint, &information);
     }
-    let steps = system.solve()?;
-    poses.iter_mut().zip(&steps).for_each(|(pose, step)| *pose = *pose * Pose2::exp(*step));
+    let steps = equations.solve()?;
+    poses.iter_mut().zip(steps).for_each(|(pose, step)| *pose = *pose * Pose2::exp(*step));
     Some(())
+}
+
+/// Adds the match of the hits of the first scan of `pair` with the second.
+fn add_pair(equations: &mut PoseEquations, pair: Pair, second_from_first: Pose2, matched: &PairEquations) {
+    equations.add_relative(pair, second_from_first, &matched.information, &matched.rhs);
 }
 
 fn matches(scans: &[SurfaceScan], poses: &[Pose2], pairs: &[Pair], model: &MatchModel) -> Vec<BothEquations> {

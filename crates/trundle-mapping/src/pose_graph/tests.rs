@@ -32,9 +32,7 @@ fn circle(noise: &[f64]) -> (Vec<Pose2>, Vec<Constraint>) {
 
 /// The reversed constraint: its covariance is transported by the adjoint of the measurement.
 fn reversed(constraint: &Constraint) -> Constraint {
-    let Pose2 { x, y, theta } = constraint.from_to;
-    let (s, c) = theta.sin_cos();
-    let adjoint = Matrix3::new(c, -s, y, s, c, -x, 0.0, 0.0, 1.0);
+    let adjoint = constraint.from_to.adjoint();
     let covariance = adjoint * constraint.covariance * adjoint.transpose();
     Constraint { from: constraint.to, to: constraint.from, from_to: constraint.from_to.inverse(), covariance }
 }

@@ -134,7 +134,7 @@ impl ScanPoints {
         self.rays.origin = origin;
         let metres = config.map.resolution;
         let cells = (1.0 / metres) as f32;
-        let origin = Vector2::new(f64::from(origin.0), f64::from(origin.1)) * metres;
+        let origin = self.origin(config);
         for (ray, beam, sigma) in rays {
             if ray.hit {
                 let end = Vector2::new(f64::from(ray.x), f64::from(ray.y)) * metres;
@@ -185,11 +185,15 @@ impl ScanPoints {
         }
     }
 
+    /// Origin of the rays, base frame, m.
+    pub(crate) fn origin(&self, config: &ParticleConfig) -> Vector2 {
+        let (x, y) = self.rays.origin;
+        Vector2::new(f64::from(x), f64::from(y)) * config.map.resolution
+    }
+
     /// All hits, in the order of their beams.
     pub(crate) fn hits(&self, config: &ParticleConfig) -> Vec<ScanHit> {
-        let cells_to_m = config.map.resolution;
-        let (x, y) = self.rays.origin;
-        let origin = Vector2::new(f64::from(x), f64::from(y)) * cells_to_m;
+        let origin = self.origin(config);
         let sigma = |end: &Vector2, own: f64| range_sigma(config, (end - origin).norm(), own);
         self.hits
             .iter()

@@ -1,7 +1,8 @@
 //! Laws of the pose-graph solution.
 
 use super::*;
-use nalgebra::{DMatrix, DVector};
+use crate::pose_graph::equations::FIRST_POSE_INFORMATION;
+use nalgebra::{DMatrix, DVector, Vector3};
 use proptest::prelude::*;
 
 /// Poses along an arc, odometry between neighbours with errors `noise`, and loops between the `pairs`.
