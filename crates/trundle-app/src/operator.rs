@@ -14,6 +14,7 @@ mod map_folder;
 mod perception_feed;
 mod replay_options;
 mod request;
+mod request_queue;
 mod run_view;
 mod series;
 mod view_feed;

@@ -1,5 +1,6 @@
 //! Drives of a simulated robot with a 2-D laser through a map, with odometry and truth at each scan.
 
+use crate::pose_history::pose_at;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
@@ -189,11 +190,4 @@ impl RandomDriver {
 fn nearest_ahead(scan: &Scan) -> f64 {
     let hits = scan.hits().filter(|hit| hit.y.atan2(hit.x).abs() < SECTOR_AHEAD_RAD);
     hits.map(|hit| hit.norm()).fold(f64::INFINITY, f64::min)
-}
-
-fn pose_at(odometry: &[(Stamp, Pose2)], stamp: Stamp) -> Option<Pose2> {
-    let after = odometry.partition_point(|(at, _)| *at <= stamp);
-    let (t0, a) = *odometry.get(after.checked_sub(1)?)?;
-    let Some((t1, b)) = odometry.get(after) else { return Some(a) };
-    Some(a.interpolate(b, (stamp - t0) / (*t1 - t0)))
 }

@@ -31,6 +31,7 @@ mod map_scene;
 pub mod missions;
 pub mod mrpb;
 pub mod people;
+mod pose_history;
 pub mod poses;
 pub mod real_time;
 mod run_each;

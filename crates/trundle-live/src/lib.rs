@@ -30,6 +30,7 @@ mod http;
 mod options;
 mod origin;
 mod page_state;
+mod processor_time;
 mod run_facts;
 mod server;
 mod steering;

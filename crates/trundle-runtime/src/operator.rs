@@ -47,6 +47,12 @@ impl OperatorCommand {
         Self::Begin(Mission::default())
     }
 
+    /// Whether the command decides if the robot moves: a later stop replaces it.
+    #[must_use]
+    pub fn decides_motion(&self) -> bool {
+        matches!(self, Self::Begin(_) | Self::Pause | Self::Continue | Self::Drive(_))
+    }
+
     /// Returns a command with valid numbers unchanged.
     ///
     /// # Errors

@@ -46,16 +46,17 @@ impl ImageFeed {
         }
     }
 
-    /// Encodes an image of a simulator at a limited rate. An image that cannot be encoded is not shown.
-    pub(crate) fn note_rgbd(&mut self, image: &RgbdImage) {
-        let stamp = image.stamp();
-        if self.encoded.is_none_or(|encoded| encoded.elapsed() >= ENCODING_PERIOD)
-            && let Ok(jpeg) = encode_color(image.color(), JPEG_QUALITY)
-        {
-            self.image = Some(Arc::new(ImageView { stamp, jpeg }));
-            self.depth = Some(Arc::new(DepthView::of(stamp, image.depth())));
-            self.encoded = Some(Instant::now());
+    /// Encodes an image of a simulator at a limited rate. An image that cannot be encoded is not shown. Returns whether it is shown.
+    pub(crate) fn note_rgbd(&mut self, image: &RgbdImage) -> bool {
+        if self.encoded.is_some_and(|encoded| encoded.elapsed() < ENCODING_PERIOD) {
+            return false;
         }
+        let Ok(jpeg) = encode_color(image.color(), JPEG_QUALITY) else { return false };
+        let stamp = image.stamp();
+        self.image = Some(Arc::new(ImageView { stamp, jpeg }));
+        self.depth = Some(Arc::new(DepthView::of(stamp, image.depth())));
+        self.encoded = Some(Instant::now());
+        true
     }
 
     /// The newest colour image.

@@ -2,13 +2,13 @@
 
 use super::annotation_store::AnnotationStore;
 use super::request::OperatorRequest;
+use super::request_queue::{MAX_WAITING_REQUESTS, RequestReceiver, RequestSender, request_queue};
 use super::run_view::RunView;
 use super::series::SeriesView;
 use super::view_feed::ViewFeed;
 use crate::RecordingSwitch;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use thiserror::Error;
@@ -16,8 +16,6 @@ use trundle_core::{Invalid, MapAnnotations, PinholeCamera, RgbdImage, SensorEven
 use trundle_io::EncodedRgbd;
 use trundle_runtime::{OperatorCommand, Robot, StepReport};
 
-/// Largest number of requests that wait for the run. A run takes one at each step. Source: ours.
-const MAX_WAITING_REQUESTS: usize = 64;
 /// Time without a request for a view after which the run counts as unwatched. Source: ours; a viewer requests a view ten times a second.
 const UNWATCHED_AFTER: Duration = Duration::from_secs(1);
 
@@ -30,7 +28,8 @@ pub struct Operator {
 /// A run's end of the link.
 #[derive(Debug)]
 pub struct OperatorLink {
-    requests: Receiver<OperatorRequest>,
+    /// `None` for a run that takes no commands.
+    requests: Option<RequestReceiver>,
     shared: Arc<Shared>,
     feed: ViewFeed,
     /// Time of the last request for a view, as noticed by the run.
@@ -39,8 +38,7 @@ pub struct OperatorLink {
 
 #[derive(Debug)]
 struct Shared {
-    /// The sender, and the number of the last request.
-    requests: Mutex<(SyncSender<OperatorRequest>, u64)>,
+    requests: RequestSender,
     view: Mutex<Option<Arc<RunView>>>,
     /// Whether a front end requested a view since the last step.
     is_asked: AtomicBool,
@@ -80,13 +78,13 @@ pub enum OperatorError {
 /// A link: the front end's end and the run's end.
 #[must_use]
 pub fn operator_link() -> (Operator, OperatorLink) {
-    let (sender, requests) = sync_channel(MAX_WAITING_REQUESTS);
-    let (requests_in, view) = (Mutex::new((sender, 0)), Mutex::default());
+    let (sender, requests) = request_queue();
+    let view = Mutex::default();
     let (is_asked, annotations, editing) = (AtomicBool::new(false), Mutex::default(), Mutex::default());
     let (series, recording) = (Mutex::default(), Mutex::default());
     let shared =
-        Arc::new(Shared { requests: requests_in, view, is_asked, series, recording, annotations, editing });
-    let link = OperatorLink::new(requests, Arc::clone(&shared));
+        Arc::new(Shared { requests: sender, view, is_asked, series, recording, annotations, editing });
+    let link = OperatorLink::new(Some(requests), Arc::clone(&shared));
     (Operator { shared }, link)
 }
 
@@ -96,23 +94,16 @@ impl Operator {
     /// # Errors
     /// When the command cannot be carried out, too many wait, or the run is over.
     pub fn send(&self, command: OperatorCommand) -> Result<u64, OperatorError> {
-        let command = command.validated()?;
-        let mut requests = self.shared.requests.lock().unwrap_or_else(PoisonError::into_inner);
-        let (sender, last) = &mut *requests;
-        let id = *last + 1;
-        match sender.try_send(OperatorRequest { id, command }) {
-            Ok(()) => {
-                *last = id;
-                Ok(id)
-            }
-            Err(TrySendError::Full(_)) => Err(OperatorError::Busy),
-            Err(TrySendError::Disconnected(_)) => Err(OperatorError::Over),
-        }
+        self.shared.requests.send(command.validated()?)
     }
 
-    /// Number of the last request that was sent.
-    fn last_request(&self) -> u64 {
-        self.shared.requests.lock().unwrap_or_else(PoisonError::into_inner).1
+    /// Stops the robot and ends its mission, before all waiting requests; drops those that would move it afterwards. A full queue does not
+    /// refuse a stop. Returns the number of the mission's end, as [`Self::send`].
+    ///
+    /// # Errors
+    /// When the run is over.
+    pub fn stop(&self) -> Result<u64, OperatorError> {
+        self.shared.requests.stop()
     }
 
     pub(super) fn editing(&self) -> MutexGuard<'_, ()> {
@@ -142,7 +133,7 @@ impl Operator {
     /// The end of this link for another displayed run without commands.
     #[must_use]
     pub fn link_of_shown_run(&self) -> OperatorLink {
-        OperatorLink::new(sync_channel(0).1, Arc::clone(&self.shared))
+        OperatorLink::new(None, Arc::clone(&self.shared))
     }
 
     /// Shows the progress of a series.
@@ -164,7 +155,7 @@ impl Operator {
 }
 
 impl OperatorLink {
-    fn new(requests: Receiver<OperatorRequest>, shared: Arc<Shared>) -> Self {
+    fn new(requests: Option<RequestReceiver>, shared: Arc<Shared>) -> Self {
         Self { requests, shared, feed: ViewFeed::default(), asked: Instant::now() }
     }
 
@@ -186,11 +177,9 @@ impl OperatorLink {
         *self.shared.recording.lock().unwrap_or_else(PoisonError::into_inner) = Some(switch);
     }
 
-    /// Copies an image of a simulator into later views if a front end watches.
-    pub fn note_rgbd(&mut self, image: &RgbdImage) {
-        if self.is_watched() {
-            self.feed.images.note_rgbd(image);
-        }
+    /// Copies an image of a simulator into later views if a front end watches and the last copy is old; returns whether it did.
+    pub fn note_rgbd(&mut self, image: &RgbdImage) -> bool {
+        self.is_watched() && self.feed.images.note_rgbd(image)
     }
 
     /// Applies [`OperatorLink::note_rgbd`] to an event with an image; ignores other events.
@@ -216,7 +205,7 @@ impl OperatorLink {
     /// The next request, if one waits. Changes to zones and places of a replaced map are dropped: the file of that map contains them.
     pub fn next_request(&self) -> Option<OperatorRequest> {
         loop {
-            let request = self.requests.try_recv().ok()?;
+            let request = self.requests.as_ref()?.next()?;
             let operator = self.operator();
             let mut store = operator.annotation_store();
             if !store.is_of_earlier_map(&request) {
@@ -258,7 +247,7 @@ impl OperatorLink {
             let operator = self.operator();
             // The lock of the store is held while a change is sent: each one is before the number or is made without the old map.
             let mut store = operator.annotation_store();
-            store.note_map_replaced(operator.last_request());
+            store.note_map_replaced(self.shared.requests.last());
         }
     }
 
@@ -288,33 +277,7 @@ impl OperatorLink {
 mod tests {
     use super::*;
     use trundle_core::Pose2;
-    use trundle_runtime::{Mission, PoseGuess, Task};
-
-    fn begin() -> OperatorCommand {
-        OperatorCommand::Begin(Mission::new(vec![Task::Return]).unwrap())
-    }
-
-    #[test]
-    fn requests_are_numbered_in_the_order_in_which_they_are_taken() {
-        let (operator, link) = operator_link();
-        assert_eq!(operator.send(begin()).unwrap(), 1);
-        assert_eq!(operator.clone().send(OperatorCommand::Pause).unwrap(), 2);
-        assert_eq!(link.next_request().unwrap(), OperatorRequest { id: 1, command: begin() });
-        assert_eq!(link.next_request().unwrap().id, 2);
-        assert_eq!(link.next_request(), None);
-    }
-
-    #[test]
-    fn a_flood_and_a_run_that_is_over_are_refused_and_use_no_numbers() {
-        let (operator, link) = operator_link();
-        let ids: Vec<_> = (0..10_000).map_while(|_| operator.send(OperatorCommand::Pause).ok()).collect();
-        assert_eq!(ids.len(), MAX_WAITING_REQUESTS);
-        assert!(matches!(operator.send(begin()), Err(OperatorError::Busy)));
-        link.next_request();
-        assert_eq!(operator.send(begin()).unwrap(), MAX_WAITING_REQUESTS as u64 + 1);
-        drop(link);
-        assert!(matches!(operator.send(begin()), Err(OperatorError::Over)));
-    }
+    use trundle_runtime::PoseGuess;
 
     #[test]
     fn a_command_that_is_not_a_number_does_not_reach_the_run() {

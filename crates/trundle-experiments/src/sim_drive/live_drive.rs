@@ -2,12 +2,16 @@
 
 use super::driver::SimDriver;
 use super::teleop::Teleop;
+use crate::pose_history::pose_at;
 use std::sync::Arc;
 use trundle_app::AppError;
-use trundle_app::operator::{Activity, MapView, OperatorLink, RunView};
+use trundle_app::operator::{Activity, DepthViewpoint, MapView, OperatorLink, PerceptionView, RunView};
 use trundle_app::real_time::RealTimePacer;
-use trundle_core::{OccupancyGrid, Pose2, RgbdImage, Scan, Stamp, Twist2};
+use trundle_core::{OccupancyGrid, Pose2, Pose3, RgbdImage, Scan, Stamp, Twist2};
 use trundle_sim::Simulator;
+
+/// Number of poses that are kept for late images: 5 s at 50 Hz. Source: ours; images of the simulator are at most 1 s late.
+const KEPT_POSES: usize = 250;
 
 /// Displays a drive; follows the requests of viewers if no other driver is given.
 pub struct LiveDrive<'d> {
@@ -17,6 +21,10 @@ pub struct LiveDrive<'d> {
     pacer: RealTimePacer,
     map: Arc<MapView>,
     scan: Option<(Pose2, Arc<Scan>)>,
+    /// The last true poses, at least [`KEPT_POSES`].
+    poses: Vec<(Stamp, Pose2)>,
+    /// Viewpoint of the shown depth image.
+    viewpoint: Option<DepthViewpoint>,
     contacts: u32,
 }
 
@@ -26,7 +34,15 @@ impl<'d> LiveDrive<'d> {
     pub fn start(driver: Option<Box<dyn SimDriver + 'd>>, link: OperatorLink, map: OccupancyGrid) -> Self {
         let map = Arc::new(MapView { number: 0, revision: 1, grid: map });
         let (teleop, pacer) = (Teleop::default(), RealTimePacer::start());
-        Self { driver, teleop, link, pacer, map, scan: None, contacts: 0 }
+        let (poses, viewpoint) = (Vec::with_capacity(2 * KEPT_POSES), None);
+        Self { driver, teleop, link, pacer, map, scan: None, poses, viewpoint, contacts: 0 }
+    }
+
+    fn note_pose(&mut self, stamp: Stamp, pose: Pose2) {
+        if self.poses.len() == self.poses.capacity() {
+            self.poses.drain(..KEPT_POSES);
+        }
+        self.poses.push((stamp, pose));
     }
 
     fn activity(&self, twist: Twist2) -> Activity {
@@ -43,12 +59,15 @@ impl<'d> LiveDrive<'d> {
     }
 
     fn publish(&mut self, stamp: Stamp, pose: Pose2, twist: Twist2) {
+        let of_activity = RunView::of_activity(stamp, pose, twist, self.activity(twist));
+        let perception = PerceptionView { depth_viewpoint: self.viewpoint, ..of_activity.perception };
         let view = RunView {
             twist,
             map: Some(Arc::clone(&self.map)),
             scan_pose: self.scan.as_ref().map(|(pose, _)| *pose),
             scan: self.scan.as_ref().map(|(_, scan)| Arc::clone(scan)),
-            ..RunView::of_activity(stamp, pose, twist, self.activity(twist))
+            perception,
+            ..of_activity
         };
         self.link.publish_view(view);
     }
@@ -58,6 +77,7 @@ impl SimDriver for LiveDrive<'_> {
     /// The twist of the driver or of the viewers; waits until real time reaches `stamp`.
     fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Result<Twist2, AppError> {
         self.pacer.wait_for(stamp.as_secs());
+        self.note_pose(stamp, pose);
         while let Some(request) = self.link.next_request() {
             self.teleop.execute(&request.command, stamp);
         }
@@ -79,7 +99,11 @@ impl SimDriver for LiveDrive<'_> {
 
     fn show(&mut self, image: &RgbdImage, robot: &Simulator) {
         self.contacts = robot.contacts();
-        self.link.note_rgbd(image);
+        if self.link.note_rgbd(image) {
+            let map_from_base = pose_at(&self.poses, image.stamp()).map(Pose3::from_pose2);
+            let map_from_camera = map_from_base.map(|base| base * robot.config().base_from_camera);
+            self.viewpoint = Some(DepthViewpoint { camera: *robot.camera(), map_from_camera });
+        }
     }
 
     fn show_scan(&mut self, scan: &Scan, robot: &Simulator) {
@@ -118,6 +142,13 @@ mod tests {
         assert_eq!((view.twist, view.state.name()), (Twist2::ZERO, "standing"));
         let seen = &view.perception;
         assert!(view.map.is_some() && view.scan.is_some() && seen.image.is_some() && seen.depth.is_some());
+        let camera = seen.depth_viewpoint.unwrap().map_from_camera.unwrap();
+        assert!((camera.translation.z - 0.45).abs() < 1e-9, "height of the mount: {camera:?}");
+        assert!(
+            (camera.translation.x - view.estimate.pose.x - 0.05).abs() < 0.05,
+            "{camera:?} of a base at {:?}",
+            view.estimate.pose
+        );
     }
 
     #[test]

@@ -29,6 +29,18 @@ export async function drawImage(jpeg: Uint8Array<ArrayBuffer>): Promise<ImageEnd
   }
 }
 
+/** Shows a text in place of the image. */
+export function hideImage(text: string): void {
+  element("camera").hidden = true;
+  element("camera-none").textContent = text;
+  element("camera-none").hidden = false;
+}
+
+export function clearFeatures(): void {
+  const canvas = element<HTMLCanvasElement>("camera-features");
+  canvas.getContext("2d")!.clearRect(0, 0, canvas.width, canvas.height);
+}
+
 export function drawFeatures(message: Extract<ByteMessage, { kind: "features" }>): void {
   const canvas = element<HTMLCanvasElement>("camera-features");
   if (canvas.hidden || message.width === 0) return;

@@ -1,10 +1,11 @@
 // The live page: what the robot sees, and how it is steered.
 
 import { Annotations } from "./annotations";
-import { drawDepth, drawFeatures, drawImage, type ImageEnd } from "./camera";
+import { drawFeatures, type ImageEnd } from "./camera";
 import { Link, type LinkState } from "./link";
 import { MapView, type Layers } from "./map_view";
 import { Moments } from "./moments";
+import { PastCamera } from "./past_camera";
 import { addToLog, element, markLog, Panel } from "./panel";
 import { Plots } from "./plots";
 import { Teleop } from "./teleop";
@@ -27,10 +28,11 @@ const map = new MapView(canvas);
 const space = new SpaceView(element<HTMLCanvasElement>("space"), map);
 const panel = new Panel();
 const moments = new Moments();
+const pastCamera = new PastCamera();
 const plots = new Plots(moments, (time) => timeline.look(time));
 const timeline = new Timeline(moments, (time, moment) => {
-  map.past = moment && { time: time!, pose: moment.pose, covariance: moment.numbers?.covariance ?? null };
-  map.dirty();
+  map.past = moment && { time: time!, pose: moment.pose, covariance: moment.numbers?.covariance ?? null, seen: moment.seen };
+  pastCamera.look(time);
   plots.mark(time);
   markLog(time);
 });
@@ -40,6 +42,8 @@ let welcome: Welcome | null = null;
 let state: RobotState | null = null;
 /** Whether the run has a depth camera whose images can be drawn in space. */
 let hasDepthCamera = false;
+/** Whether a goal is added to the queue, without the shift key too. */
+let isQueueing = false;
 /** What becomes of the last image. */
 let imageEnd = Promise.resolve<ImageEnd>("broken");
 /** What a refusal beside the map refers to. */
@@ -66,7 +70,7 @@ const series = new SeriesCard(() => {
 });
 const tools = new MapTools(canvas, map, () => state?.pose[2] ?? 0, annotations.tool, {
   onPlace: (pose) => annotations.newPlace(pose),
-  onGoal: (pose, append) => void go(pose, append),
+  onGoal: (pose, append) => void go(pose, append || isQueueing),
   onPose: (pose) => void request({ type: "set_pose", pose: asGoal(pose) }, pose),
 });
 const teleop = new Teleop(element("stick"), element("knob"), (v, omega) => link.send({ type: "drive", v, omega }));
@@ -109,7 +113,7 @@ function onReply(reply: Reply): void {
       state = reply;
       map.setState(reply);
       panel.show(reply);
-      if (moments.add(reply)) plots.draw();
+      if (moments.add(reply, map.seen)) plots.draw();
       timeline.moved();
       showWheel(reply);
       showPause(reply);
@@ -133,7 +137,7 @@ function onReply(reply: Reply): void {
       break;
     case "states":
       addToLog(reply.states, (time) => timeline.look(time));
-      moments.states.push(...reply.states);
+      moments.enter(reply.states);
       break;
     case "refused":
       toast(reply.refusal, "warn");
@@ -146,7 +150,7 @@ function onReply(reply: Reply): void {
 function onBytes(message: ByteMessage): void {
   switch (message.kind) {
     case "tiles":
-      map.tiles.add(message);
+      map.tiles.add(message, moments.now);
       map.mapChanged();
       break;
     case "scan":
@@ -163,13 +167,13 @@ function onBytes(message: ByteMessage): void {
       map.setVisualMap(message.keyframes, message.landmarks);
       break;
     case "features":
-      drawFeatures(message);
+      if (!map.past) drawFeatures(message);
       break;
     case "image":
-      imageEnd = drawImage(message.jpeg);
+      imageEnd = pastCamera.add(message.time, message.jpeg);
       break;
     case "depth":
-      drawDepth(message);
+      pastCamera.addDepth(message);
       if (isCollecting()) void imageEnd.then((end) => addToCloud(message, end));
       break;
   }
@@ -265,6 +269,7 @@ function connectButtons(): void {
     plots.draw();
     timeline.draw();
   });
+  press("queue-toggle", toggleQueue);
   press("fit", () => {
     map.fit();
     showFollow();
@@ -332,6 +337,7 @@ function onKey(event: KeyboardEvent): void {
     t: () => selectTool("drive"),
     z: () => selectTool("zone"),
     n: () => selectTool("place"),
+    q: toggleQueue,
     enter: () => event.target === canvas && annotations.tool.close(),
     escape: () => selectTool("move"),
     f: toggleFollow,
@@ -412,6 +418,12 @@ function selectTool(tool: Tool): void {
   });
 }
 
+/** A goal replaces the mission, or is added to it. */
+function toggleQueue(): void {
+  isQueueing = !isQueueing;
+  element("queue-toggle").setAttribute("aria-pressed", String(isQueueing));
+}
+
 function toggleFollow(): void {
   map.follows = !map.follows;
   map.dirty();
@@ -428,7 +440,7 @@ function typedGoal(): void {
     return text === "" ? 0 : Number(text);
   };
   const pose: Pose = [number("goal-x"), number("goal-y"), (number("goal-heading") * Math.PI) / 180];
-  if (pose.every(Number.isFinite)) void go(pose, false);
+  if (pose.every(Number.isFinite)) void go(pose, isQueueing);
   else toast("A goal is three numbers: x and y in metres, the heading in degrees.", "warn");
 }
 

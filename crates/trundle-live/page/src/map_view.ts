@@ -36,12 +36,24 @@ export interface Ghost {
   kind: "goal" | "pose";
 }
 
+/** What the map shows beside tiles and robot. What comes later replaces its parts and does not change them. */
+export interface Seen {
+  state: RobotState | null;
+  scan: Float32Array;
+  plan: Float32Array;
+  waypoints: Float32Array;
+}
+
+const NONE = new Float32Array();
+const NOTHING: Seen = { state: null, scan: NONE, plan: NONE, waypoints: NONE };
+
 /** What is shown of a time of the past. */
 export interface Past {
   time: number;
   pose: Pose;
   /** null where it is not known. */
   covariance: Covariance | null;
+  seen: Seen | null;
 }
 
 export interface Scene {
@@ -70,8 +82,7 @@ export class MapView {
   readonly zones: ZoneScene = { zones: [], places: [], draft: null, hidden: 0 };
   follows = true;
   ghost: Ghost | null = null;
-  /** The time of the past that is looked at. */
-  past: Past | null = null;
+  private lookedAt: Past | null = null;
   /** Called after each change of the view, for what is placed by the map's frame. */
   onMove: () => void = () => {};
   private readonly context: CanvasRenderingContext2D;
@@ -79,14 +90,11 @@ export class MapView {
   private colors: Colors = colors();
   private scale = 60;
   private center: Point = [0, 0];
-  private state: RobotState | null = null;
+  private now = NOTHING;
   private drawn: Pose | null = null;
   private footprint: Welcome["footprint"] = { disc: 0.17 };
-  private scan = new Float32Array();
   private keyframes = new Float32Array();
   private landmarks = new Float32Array();
-  private plan = new Float32Array();
-  private waypoints = new Float32Array();
   private trail: number[] = [];
   /** Time of each point of the trail [s]. */
   private trailTimes: number[] = [];
@@ -109,8 +117,29 @@ export class MapView {
     this.dirty();
   }
 
+  /** What is shown now. */
+  get seen(): Seen {
+    return this.now;
+  }
+
+  /** The time of the past that is looked at. */
+  get past(): Past | null {
+    return this.lookedAt;
+  }
+
+  set past(past: Past | null) {
+    this.lookedAt = past;
+    this.tiles.look(past && past.time);
+    this.dirty();
+  }
+
+  /** What is shown of the time that is looked at. */
+  private get shown(): Seen {
+    return this.past ? (this.past.seen ?? NOTHING) : this.now;
+  }
+
   setState(state: RobotState): void {
-    this.state = state;
+    this.now = { ...this.now, state };
     const [x, y] = state.pose;
     const n = this.trail.length;
     if (n === 0 || Math.hypot(x - this.trail[n - 2]!, y - this.trail[n - 1]!) > 0.02) {
@@ -125,7 +154,7 @@ export class MapView {
   }
 
   setScan(points: Float32Array): void {
-    this.scan = points as Float32Array<ArrayBuffer>;
+    this.now = { ...this.now, scan: points };
     this.dirty();
   }
 
@@ -136,8 +165,7 @@ export class MapView {
   }
 
   setPlan(points: Float32Array, waypoints: Float32Array): void {
-    this.plan = points as Float32Array<ArrayBuffer>;
-    this.waypoints = waypoints as Float32Array<ArrayBuffer>;
+    this.now = { ...this.now, plan: points, waypoints };
     this.dirty();
   }
 
@@ -145,7 +173,8 @@ export class MapView {
   forgetRun(): void {
     this.trail = [];
     this.trailTimes = [];
-    this.scan = this.plan = this.waypoints = this.keyframes = this.landmarks = new Float32Array();
+    this.keyframes = this.landmarks = new Float32Array();
+    this.now = { ...NOTHING, state: this.now.state };
     this.past = null;
     this.isFitted = false;
     this.dirty();
@@ -243,14 +272,15 @@ export class MapView {
 
   /** What the view of space draws besides the tiles. */
   get scene(): Scene {
+    const { state, plan, scan } = this.shown;
     return {
-      robot: this.drawn,
+      robot: this.past ? this.past.pose : this.drawn,
       reach: this.reach(),
       landmarks: this.landmarks,
       keyframes: this.keyframes,
       trail: this.trail,
-      plan: this.state?.left.length ? this.plan : new Float32Array(),
-      scan: this.scan,
+      plan: state?.left.length ? plan : NONE,
+      scan,
     };
   }
 
@@ -285,8 +315,8 @@ export class MapView {
 
   /** Moves the drawn robot towards its estimate; whether it moved. */
   private glide(dt: number): boolean {
-    if (!this.state) return false;
-    const [x, y, theta] = this.state.pose;
+    if (!this.now.state) return false;
+    const [x, y, theta] = this.now.state.pose;
     const known = this.drawn;
     if (!known || Math.hypot(x - known[0], y - known[1]) > JUMP_M || document.hidden) {
       this.drawn = [x, y, theta];
@@ -327,7 +357,8 @@ export class MapView {
     if (this.layers.plan) this.drawPlan();
     if (this.layers.waypoints) this.drawWaypoints();
     if (this.layers.scan) this.drawScan();
-    if (this.state?.station) this.drawStation(this.state.station);
+    const { station } = this.shown.state ?? {};
+    if (station) this.drawStation(station);
     this.drawMovers();
     this.drawGoals();
     if (this.layers.sigma) this.drawSigma();
@@ -392,10 +423,11 @@ export class MapView {
   }
 
   private drawPlan(): void {
-    if (this.plan.length < 4 || !this.state?.left.length) return;
+    const { plan, state } = this.shown;
+    if (plan.length < 4 || !state?.left.length) return;
     const { context } = this;
     context.lineJoin = context.lineCap = "round";
-    this.line(this.plan);
+    this.line(plan);
     context.strokeStyle = this.colors.planCase;
     context.lineWidth = 7 * devicePixelRatio;
     context.stroke();
@@ -406,18 +438,19 @@ export class MapView {
 
   /** The way-points of the planner as rings on their straight segments, past which the curve is drawn. */
   private drawWaypoints(): void {
-    if (this.waypoints.length < 4 || !this.state?.left.length) return;
+    const { waypoints, state } = this.shown;
+    if (waypoints.length < 4 || !state?.left.length) return;
     const { context } = this;
     const ratio = devicePixelRatio;
     context.strokeStyle = this.colors.plan;
     context.fillStyle = this.colors.robotEdge;
     context.lineWidth = 1.5 * ratio;
-    this.line(this.waypoints);
+    this.line(waypoints);
     context.setLineDash([3 * ratio, 4 * ratio]);
     context.stroke();
     context.setLineDash([]);
-    for (let i = 0; i + 1 < this.waypoints.length; i += 2) {
-      const [x, y] = this.toScreen([this.waypoints[i]!, this.waypoints[i + 1]!]);
+    for (let i = 0; i + 1 < waypoints.length; i += 2) {
+      const [x, y] = this.toScreen([waypoints[i]!, waypoints[i + 1]!]);
       context.beginPath();
       context.arc(x, y, 4 * ratio, 0, 2 * Math.PI);
       context.fill();
@@ -427,17 +460,18 @@ export class MapView {
 
   private drawScan(): void {
     const { context } = this;
+    const { scan } = this.shown;
     const size = Math.max(2, Math.min(5, this.scale * 0.03)) * devicePixelRatio;
     context.fillStyle = this.colors.scan;
-    for (let i = 0; i + 1 < this.scan.length; i += 2) {
-      const [x, y] = this.toScreen([this.scan[i]!, this.scan[i + 1]!]);
+    for (let i = 0; i + 1 < scan.length; i += 2) {
+      const [x, y] = this.toScreen([scan[i]!, scan[i + 1]!]);
       context.fillRect(x - size / 2, y - size / 2, size, size);
     }
   }
 
   /** The goals of the mission: pins with their order and their heading. */
   private drawGoals(): void {
-    const goals = this.state?.left.flatMap((task) => (task.goal ? [task.goal] : [])) ?? [];
+    const goals = this.shown.state?.left.flatMap((task) => (task.goal ? [task.goal] : [])) ?? [];
     goals.forEach((goal, i) => this.drawPin(goal, goals.length > 1 ? String(i + 1) : "", this.colors.goal, 1));
   }
 
@@ -490,7 +524,7 @@ export class MapView {
   private drawSigma(): void {
     const { context } = this;
     const pose = this.past ? this.past.pose : this.drawn;
-    const covariance = this.past ? this.past.covariance : this.state?.covariance;
+    const covariance = this.past ? this.past.covariance : this.now.state?.covariance;
     if (!pose || !covariance) return;
     const unit = this.scale * devicePixelRatio;
     const { long, short, direction } = positionEllipse(covariance);
@@ -542,8 +576,9 @@ export class MapView {
   /** Closed loops: with the landmarks all, else those of the last seconds. */
   private drawLoops(): void {
     const { context } = this;
-    const now = this.state?.time ?? 0;
-    for (const [time, x, y] of this.state?.loops ?? []) {
+    const { state } = this.shown;
+    const now = state?.time ?? 0;
+    for (const [time, x, y] of state?.loops ?? []) {
       const age = now - time;
       if (age > SHOWN_LOOP_S && !this.layers.visual) continue;
       const [left, top] = this.toScreen([x, y]);
@@ -579,7 +614,7 @@ export class MapView {
   private drawMovers(): void {
     const { context } = this;
     const unit = this.scale * devicePixelRatio;
-    for (const [x, y, radius, laterX, laterY] of this.state?.movers ?? []) {
+    for (const [x, y, radius, laterX, laterY] of this.shown.state?.movers ?? []) {
       const now = this.toScreen([x, y]);
       const later = this.toScreen([laterX, laterY]);
       context.strokeStyle = context.fillStyle = this.colors.ghost;

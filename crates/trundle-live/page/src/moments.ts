@@ -1,6 +1,7 @@
 // The last ten minutes of the run, as far as this page knows them.
 
 import { headingBound, positionEllipse, type Covariance } from "./uncertainty";
+import type { Seen } from "./map_view";
 import type { Pose, RobotState, StateEntry } from "./wire";
 
 /** Time that is kept [s]. */
@@ -36,6 +37,8 @@ export interface Moment {
   pose: Pose;
   /** null before this page came: the server keeps poses and states alone. */
   numbers: Numbers | null;
+  /** What the map showed; null before this page came. */
+  seen: Seen | null;
 }
 
 export class Moments {
@@ -50,18 +53,26 @@ export class Moments {
     this.states = [];
     this.busy = [];
     for (let i = 0; i + 3 < poses.length; i += 4) {
-      this.list.push({ time: poses[i + 3]!, pose: [poses[i]!, poses[i + 1]!, poses[i + 2]!], numbers: null });
+      this.list.push({ time: poses[i + 3]!, pose: [poses[i]!, poses[i + 1]!, poses[i + 2]!], numbers: null, seen: null });
     }
   }
 
-  /** Takes a state over; whether it is a new moment. */
-  add(state: RobotState): boolean {
+  /** States that were entered, the newest last; the one in force at the beginning of what is kept stays. */
+  enter(states: StateEntry[]): void {
+    this.states.push(...states);
+    const first = this.states.findIndex((state) => state.time >= this.now - LENGTH_S);
+    const passed = first < 0 ? this.states.length - 1 : first - 1;
+    if (passed > 0) this.states.splice(0, passed);
+  }
+
+  /** Takes a state over, with what the map shows; whether it is a new moment. */
+  add(state: RobotState, seen: Seen): boolean {
     this.now = state.time;
     const last = this.list[this.list.length - 1];
     const dt = last ? state.time - last.time : Infinity;
     if (dt < -RESTART_S) this.list = [];
     else if (dt < PERIOD_S) return false;
-    this.list.push({ time: state.time, pose: state.pose, numbers: this.numbers(state) });
+    this.list.push({ time: state.time, pose: state.pose, numbers: this.numbers(state), seen });
     const first = this.list.findIndex((moment) => moment.time >= this.now - LENGTH_S);
     if (first > 50) this.list.splice(0, first);
     return true;

@@ -41,6 +41,8 @@ function setText(id: string, text: string): void {
 
 export class Panel {
   private rated: Pick<RobotState, "time" | "counts" | "stages"> | null = null;
+  /** Processor time of the program at a time of this page, for the next part of a core. */
+  private worked: { at: number; processor: number } | null = null;
   private spoken = "";
   private tasks = "";
 
@@ -49,6 +51,7 @@ export class Panel {
     this.showTasks(state);
     this.showNumbers(state);
     this.showRates(state);
+    this.showProcessor(state.processor);
     this.showBattery(state);
   }
 
@@ -109,6 +112,17 @@ export class Panel {
     setText("dropped", String(state.counts[3]));
     this.showStages(state, dt);
     this.rated = state;
+  }
+
+  /** The part of a core that the program takes by the clock of this page: a simulated robot has another one. */
+  private showProcessor(processor: number | null): void {
+    if (processor === null) return;
+    const now = { at: performance.now() / 1000, processor };
+    this.worked ??= now;
+    const dt = now.at - this.worked.at;
+    if (dt < RATE_PERIOD_S) return;
+    if (processor >= this.worked.processor) setText("processor", `${((100 * (processor - this.worked.processor)) / dt).toFixed(0)} % of a core`);
+    this.worked = now;
   }
 
   /** The part of a core that each stage of the robot takes, the largest first. */

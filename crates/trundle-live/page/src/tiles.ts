@@ -1,6 +1,7 @@
 // The tiles of the map as pictures: 8 x 8 tiles share one canvas, so that a large map is few pictures.
 
 import { ChunkPainter } from "./chunk_painter";
+import { TileHistory, type Cells } from "./tile_history";
 import { TILE_CELLS, type Point, type TileMessage } from "./wire";
 
 const CHUNK_TILES = 8;
@@ -16,6 +17,9 @@ export interface Chunk {
   context: CanvasRenderingContext2D;
 }
 
+/** The cells of a tile of which nothing is known. */
+const UNKNOWN = new Uint8Array((TILE_CELLS * TILE_CELLS) / 4);
+
 type Rgba = [number, number, number, number];
 
 export class Tiles {
@@ -24,6 +28,11 @@ export class Tiles {
   private generation = -1;
   private readonly chunks = new Map<string, Chunk>();
   private readonly cells = new Map<string, { column: number; row: number; cells: Uint8Array }>();
+  private readonly history = new TileHistory();
+  /** The time that is looked at [s]; null: now. */
+  private lookedAt: number | null = null;
+  /** The tiles that were others at that time. */
+  private past = new Map<string, Cells>();
   private readonly painter = new ChunkPainter();
   private readonly image = new ImageData(TILE_CELLS, TILE_CELLS);
   /** The colour of free cells beside unknown ones. */
@@ -37,28 +46,55 @@ export class Tiles {
   setColors(floor: string, wall: string, frontier: string): void {
     this.frontier = rgba(frontier);
     this.palette = [[0, 0, 0, 0], rgba(floor), rgba(wall)];
-    this.cells.forEach((tile) => this.paint(tile.column, tile.row, tile.cells));
+    this.cells.forEach((_, key) => this.paint(key));
   }
 
-  add(message: TileMessage): void {
+  /** Takes tiles over that came at a time of the robot [s]. */
+  add(message: TileMessage, time: number): void {
     if (message.generation !== this.generation || message.resolution !== this.resolution) {
       this.generation = message.generation;
       this.chunks.clear();
       this.cells.clear();
+      this.history.clear();
+      this.past.clear();
     }
     this.resolution = message.resolution;
     this.origin = message.origin;
-    for (const tile of message.tiles) this.cells.set(`${tile.column},${tile.row}`, tile);
-    const changed = new Map<string, (typeof message.tiles)[number]>();
-    for (const { column, row } of message.tiles) {
-      // The frontier at the border of a tile depends on the tile beside it.
-      for (const [dx, dy] of [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]] as const) {
-        const key = `${column + dx},${row + dy}`;
-        const tile = this.cells.get(key);
-        if (tile) changed.set(key, tile);
-      }
+    for (const tile of message.tiles) {
+      const key = `${tile.column},${tile.row}`;
+      const before = this.cells.get(key)?.cells ?? null;
+      this.history.add(time, key, before);
+      if (this.lookedAt !== null && !this.past.has(key)) this.past.set(key, before);
+      this.cells.set(key, tile);
     }
-    changed.forEach((tile) => this.paint(tile.column, tile.row, tile.cells));
+    this.repaint(message.tiles.map(({ column, row }) => `${column},${row}`));
+  }
+
+  /** Shows the map of a time [s]; null shows now. */
+  look(time: number | null): void {
+    const past = time === null ? new Map<string, Cells>() : this.history.differentAt(time);
+    const keys = new Set([...this.past.keys(), ...past.keys()]);
+    const before = new Map([...keys].map((key) => [key, this.shown(key)]));
+    this.lookedAt = time;
+    this.past = past;
+    this.repaint([...keys].filter((key) => this.shown(key) !== before.get(key)));
+  }
+
+  /** The cells of a tile at the time that is looked at. */
+  private shown(key: string): Cells {
+    const past = this.past.get(key);
+    return past === undefined ? (this.cells.get(key)?.cells ?? null) : past;
+  }
+
+  private repaint(keys: string[]): void {
+    const changed = new Set<string>();
+    for (const key of keys) {
+      const tile = this.cells.get(key);
+      if (!tile) continue;
+      // The frontier at the border of a tile depends on the tile beside it.
+      for (const [dx, dy] of [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]] as const) changed.add(`${tile.column + dx},${tile.row + dy}`);
+    }
+    changed.forEach((key) => this.paint(key));
   }
 
   /** Whether a point of the map frame is in an occupied cell. */
@@ -112,7 +148,11 @@ export class Tiles {
     this.painter.end();
   }
 
-  private paint(column: number, row: number, cells: Uint8Array): void {
+  private paint(key: string): void {
+    const tile = this.cells.get(key);
+    if (!tile) return;
+    const { column, row } = tile;
+    const cells = this.shown(key) ?? UNKNOWN;
     const data = this.image.data;
     for (let y = 0; y < TILE_CELLS; y++) {
       for (let x = 0; x < TILE_CELLS; x++) {
@@ -138,11 +178,11 @@ export class Tiles {
   /** Whether a cell beside cell (x, y) of a tile is unknown. */
   private isBesideUnknown(column: number, row: number, cells: Uint8Array, x: number, y: number): boolean {
     const last = TILE_CELLS - 1;
-    const value = (of: Uint8Array | undefined, i: number) => (of ? ((of[i >> 2] ?? 0) >> (2 * (i & 3))) & 3 : 0);
+    const value = (of: Cells, i: number) => (of ? ((of[i >> 2] ?? 0) >> (2 * (i & 3))) & 3 : 0);
     const at = (dx: number, dy: number): number => {
       const [cx, cy] = [x + dx, y + dy];
       if (cx >= 0 && cy >= 0 && cx <= last && cy <= last) return value(cells, cy * TILE_CELLS + cx);
-      const beside = this.cells.get(`${column + Math.floor(cx / TILE_CELLS)},${row + Math.floor(cy / TILE_CELLS)}`)?.cells;
+      const beside = this.shown(`${column + Math.floor(cx / TILE_CELLS)},${row + Math.floor(cy / TILE_CELLS)}`);
       return value(beside, ((cy + TILE_CELLS) % TILE_CELLS) * TILE_CELLS + ((cx + TILE_CELLS) % TILE_CELLS));
     };
     return at(1, 0) === 0 || at(-1, 0) === 0 || at(0, 1) === 0 || at(0, -1) === 0;

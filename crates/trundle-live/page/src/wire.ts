@@ -32,6 +32,8 @@ export interface RobotState {
   station: Pose | null;
   counts: [slam: number, mapping: number, control: number, dropped: number];
   stages: [name: string, seconds: number][];
+  /** Processor time of the program [s]; null where the system does not say it. */
+  processor: number | null;
   loops: [time: number, x: number, y: number][];
   wheel: { name: string; is_you: boolean } | null;
   viewers: number;
@@ -155,7 +157,7 @@ export type ByteMessage =
   | { kind: "trail"; poses: Float32Array }
   | { kind: "visual"; keyframes: Float32Array; landmarks: Float32Array }
   | { kind: "features"; width: number; height: number; spots: Float32Array; tracked: boolean[] }
-  | { kind: "image"; jpeg: Uint8Array<ArrayBuffer> }
+  | { kind: "image"; time: number; jpeg: Uint8Array<ArrayBuffer> }
   | DepthMessage;
 
 /** Reads a message of bytes; null for a kind that this page does not know. */
@@ -169,7 +171,7 @@ export function readBytes(buffer: ArrayBuffer): ByteMessage | null {
     case 3:
       return readPlan(view, buffer);
     case 4:
-      return { kind: "image", jpeg: new Uint8Array(buffer, 16) };
+      return { kind: "image", time: view.getFloat64(8, true), jpeg: new Uint8Array(buffer, 16) };
     case 5:
       return { kind: "trail", poses: new Float32Array(buffer.slice(4)) };
     case 6:

@@ -51,7 +51,13 @@ fn with_headers(mut response: Response, host: &str, is_encrypted: bool) -> Respo
         (header::REFERRER_POLICY, "no-referrer"),
         (header::CACHE_CONTROL, "no-store"),
     ];
+    // A connection carries one answer: requests sent in one go without a token would else be answered before the stop of another
+    // connection. The answer that opens a viewer's link keeps its own header.
+    let opens_link = response.status() == StatusCode::SWITCHING_PROTOCOLS;
     let headers = response.headers_mut();
+    if !opens_link {
+        headers.insert(header::CONNECTION, HeaderValue::from_static("close"));
+    }
     if let Ok(policy) = HeaderValue::from_str(&policy) {
         headers.insert(header::CONTENT_SECURITY_POLICY, policy);
     }

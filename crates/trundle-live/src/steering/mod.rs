@@ -103,9 +103,9 @@ impl RunSteering {
     /// # Errors
     /// When the run is over.
     pub fn stop(&self) -> Result<(), CommandRefusal> {
-        self.send(OperatorCommand::Pause)?;
+        self.operator.stop().map_err(CommandRefusal::from)?;
         self.is_paused_here.store(true, Ordering::Relaxed);
-        self.send(OperatorCommand::cancel())
+        Ok(())
     }
 
     /// Stops the robot after the departure of its driver.

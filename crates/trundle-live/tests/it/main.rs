@@ -6,6 +6,7 @@ mod guard;
 mod half_open;
 mod live_run;
 mod many_connections;
+mod pipelined;
 mod steering;
 #[cfg(feature = "tls")]
 mod tls;
