@@ -14,4 +14,8 @@ command -v node >/dev/null && command -v npm >/dev/null || skip "no Node or npm"
 npm ci --silent --no-audit --no-fund >/dev/null 2>&1 || skip "vda-5050-lib cannot be had: no network?"
 broker=$(bash get-broker.sh "$PWD/../../target/fleet-broker" 2>/dev/null) || skip "no mosquitto: apt-get install mosquitto"
 "$trundle" demo --help | grep -q -- --mqtt || skip "trundle was built without the feature mqtt"
-node test.mjs "$trundle" "$broker"
+schemas=$(bash get-schemas.sh "$PWD/../../target/vda-schemas" 2>/dev/null) || {
+    schemas=
+    echo "skipped: messages by the JSON schemas of VDA 5050 2.1 (they cannot be had: no PyPI?)"
+}
+node test.mjs "$trundle" "$broker" $schemas

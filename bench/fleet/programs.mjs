@@ -7,7 +7,7 @@ import { dirname, join } from "node:path";
 
 export const place = mkdtempSync(join(tmpdir(), "fleet-"));
 export const ROBOT = { manufacturer: "acme", serialNumber: "r1" };
-export const PASSWORDS = { robot: "wheels", master: "orders", home: "sofa" };
+export const PASSWORDS = { robot: "wheels", robot2: "tracks", master: "orders", home: "sofa" };
 
 /** A port that nobody uses. */
 export async function freePort() {
@@ -18,17 +18,21 @@ export async function freePort() {
   return port;
 }
 
-/** Who may read and write what: the example of docs/how-to/home-and-fleet.md. */
-const ACCESS = `user robot
-topic readwrite acme/r1/#
-topic write homeassistant/device/acme_r1/config
-topic read uagv/v2/acme/r1/order
-topic read uagv/v2/acme/r1/instantActions
-topic write uagv/v2/acme/r1/state
-topic write uagv/v2/acme/r1/visualization
-topic write uagv/v2/acme/r1/connection
-topic write uagv/v2/acme/r1/factsheet
+/** What a robot may read and write. */
+const accessOf = (user, name) => `user ${user}
+topic readwrite acme/${name}/#
+topic write homeassistant/device/acme_${name}/config
+topic read uagv/v2/acme/${name}/order
+topic read uagv/v2/acme/${name}/instantActions
+topic write uagv/v2/acme/${name}/state
+topic write uagv/v2/acme/${name}/visualization
+topic write uagv/v2/acme/${name}/connection
+topic write uagv/v2/acme/${name}/factsheet
+`;
 
+/** Who may read and write what: the example of docs/how-to/home-and-fleet.md, for two robots. */
+const ACCESS = `${accessOf("robot", "r1")}
+${accessOf("robot2", "r2")}
 user master
 topic readwrite uagv/v2/#
 
@@ -65,10 +69,11 @@ function run(program, args, env = {}) {
 export const startBroker = (broker, file) => run(broker, ["-c", file]);
 
 /** A robot in the simulator, by the clock on the wall, with nothing to do. */
-export function startRobot(trundle, port, password = PASSWORDS.robot) {
-  const { manufacturer, serialNumber } = ROBOT;
-  const args = ["demo", "--direct", "--goal", "0.1,0,0", "--record", "none", "--out", join(place, "run")];
-  const mqtt = ["--mqtt", `mqtt://robot@127.0.0.1:${port}`, "--mqtt-name", `${manufacturer}/${serialNumber}`, "--mqtt-map", "hall"];
+export function startRobot(trundle, port, password = PASSWORDS.robot, robot = ROBOT) {
+  const { manufacturer, serialNumber } = robot;
+  const user = robot === ROBOT ? "robot" : "robot2";
+  const args = ["demo", "--direct", "--goal", "0.1,0,0", "--record", "none", "--out", join(place, `run-${serialNumber}`)];
+  const mqtt = ["--mqtt", `mqtt://${user}@127.0.0.1:${port}`, "--mqtt-name", `${manufacturer}/${serialNumber}`, "--mqtt-map", "hall"];
   return run(trundle, [...args, ...mqtt], { TRUNDLE_MQTT_PASSWORD: password });
 }
 

@@ -1,13 +1,17 @@
-// Home and fleet by a real broker: `node test.mjs TRUNDLE MOSQUITTO`. Prints one line for each thing that holds; ends with 1 where one does not.
+// Home and fleet by a real broker: `node test.mjs TRUNDLE MOSQUITTO [SCHEMAS]`. Prints one line for each thing that holds; ends with 1 where one
+// does not. SCHEMAS: folder of the JSON schemas of VDA 5050 2.1 (get-schemas.sh).
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
+import { existsSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import Ajv from "ajv/dist/2020.js";
 import mqtt from "mqtt";
 import vda from "vda-5050-lib";
 import { action, order } from "./orders.mjs";
 import { PASSWORDS, ROBOT, configure, freePort, startBroker, startRobot } from "./programs.mjs";
 
-const [trundle, mosquitto] = process.argv.slice(2);
-if (!trundle || !mosquitto) throw new Error("usage: node test.mjs TRUNDLE MOSQUITTO");
+const [trundle, mosquitto, schemas] = process.argv.slice(2);
+if (!trundle || !mosquitto) throw new Error("usage: node test.mjs TRUNDLE MOSQUITTO [SCHEMAS]");
 const validators = createRequire(import.meta.url)("vda-5050-lib/common/vda-5050-validators-2.0.js");
 
 const port = await freePort();
@@ -47,9 +51,18 @@ const listen = (username, topics, take) => {
   client.on("error", () => {});
   return client;
 };
+/** The validators of a topic: those of the master's library, which are of version 2.0, and the schemas of version 2.1. */
+const ajv = new Ajv({ strict: false, validateFormats: false });
+const ofVersion21 = new Map();
+const validatorsOf = (topic) => {
+  const file = schemas && join(schemas, `${topic}.json`);
+  if (!ofVersion21.has(topic)) ofVersion21.set(topic, file && existsSync(file) ? ajv.compile(JSON.parse(readFileSync(file, "utf8"))) : null);
+  return [validators[`validate${topic[0].toUpperCase()}${topic.slice(1)}`], ofVersion21.get(topic)].filter(Boolean);
+};
 const checkForm = (topic, message) => {
-  const isValid = validators[`validate${topic[0].toUpperCase()}${topic.slice(1)}`];
-  if (isValid && !isValid(message)) seen.problems.push(`${topic}: ${JSON.stringify(isValid.errors)}`);
+  for (const isValid of validatorsOf(topic)) {
+    if (!isValid(message)) seen.problems.push(`${topic}: ${JSON.stringify(isValid.errors)}`);
+  }
 };
 const base = `uagv/v2/${ROBOT.manufacturer}/${ROBOT.serialNumber}`;
 const listener = listen("master", `${base}/#`, (topic, payload) => {
@@ -79,11 +92,11 @@ const master = new vda.MasterController(
   {},
 );
 
-/** Gives an order; what the master's handlers hear about it. */
-async function give(given) {
+/** Gives an order to a robot; what the master's handlers hear about it. */
+async function give(given, to = ROBOT) {
   const heard = { nodes: [], edges: [], actions: [], end: null };
   const now = seen.states.length;
-  await master.assignOrder(ROBOT, given, {
+  await master.assignOrder(to, given, {
     onOrderProcessed: (error, byCancelation, active) => (heard.end = { error, byCancelation, active }),
     onNodeTraversed: (node) => heard.nodes.push(node.nodeId),
     onEdgeTraversed: (edge) => heard.edges.push(edge.edgeId),
@@ -133,7 +146,9 @@ await check("factsheet and state have the standard's form", async () => {
   seen.factsheet = null;
   assert.equal((await instant(action("sheet1", "factsheetRequest"))).status, "FINISHED");
   await until("the factsheet", () => seen.factsheet);
-  return `${Object.keys(validators).length} validators`;
+  const checked = [...ofVersion21].filter(([, isValid]) => isValid).map(([topic]) => topic);
+  if (schemas) assert.deepEqual(checked.sort(), ["connection", "factsheet", "state", "visualization"]);
+  return schemas ? `by the schemas of 2.0 and 2.1: ${checked.join(", ")}` : "by the schemas of 2.0";
 });
 
 await check("an order of three nodes with a wait is driven to its end", async () => {
@@ -262,6 +277,33 @@ await check("commands of the home are carried out or refused with the reason", a
   await until("rest", () => word() === "idle");
   assert.match((await command("fly")).text, /'fly' is not a command; expected start/);
   assert.match((await command({ command: "go", place: "moon" })).text, /no place 'moon'/);
+});
+
+await check("two robots under one master: one order is cancelled, the other driven to its end", async () => {
+  const second = { ...ROBOT, serialNumber: "r2" };
+  const other = startRobot(trundle, port, PASSWORDS.robot2, second);
+  let state = null;
+  const ears = listen("master", `uagv/v2/acme/r2/state`, (topic, payload) => {
+    state = JSON.parse(payload);
+    checkForm("state", state);
+  });
+  try {
+    await until("the second robot at rest", () => state && !state.driving && state.agvPosition.x > 0.08, 60);
+    await clear();
+    const stays = await give(order("stays", 0, 0, [here(), [seen.state.agvPosition.x < 0.8 ? 1.4 : 0.2, 0]]));
+    const start = [state.agvPosition.x, state.agvPosition.y, { allowedDeviationXY: 0.5, allowedDeviationTheta: 3.14 }];
+    const drives = await give(order("drives", 0, 0, [start, [1.0, 0]]), second);
+    await until("both in motion", () => seen.state.driving && state.driving && seen.state.orderId === "stays" && state.orderId === "drives");
+    assert.equal((await instant(action("cancel3", "cancelOrder"))).status, "FINISHED");
+    assert(stays.heard.end.byCancelation);
+    await until("the end of the second robot's order", () => drives.heard.end, 60);
+    assert(!drives.heard.end.error && !drives.heard.end.byCancelation);
+    const away = Math.hypot(state.agvPosition.x - 1.0, state.agvPosition.y);
+    assert(away < 0.05, `${away} m from the node`);
+  } finally {
+    ears.end(true);
+    await other.end();
+  }
 });
 
 await check("the robot says goodbye when it ends, and the broker when it dies", async () => {

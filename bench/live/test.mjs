@@ -528,12 +528,94 @@ await check("driving by keys, and silence stops", async () => {
   return `${shown} s of the robot's time until a viewer sees it at rest`;
 });
 
+/** The answer to a stop by an own link with the token of a viewer's link. */
+async function stopByLink(url) {
+  const { host, hash } = new URL(url);
+  const socket = new WebSocket(`ws://${host}/live`);
+  const answer = new Promise((resolve) => {
+    socket.onopen = () => socket.send(JSON.stringify({ type: "hello", version: window.trundle.wireVersion, token: hash.slice(1), name: "viewer" }));
+    socket.onmessage = ({ data }) => {
+      const message = typeof data === "string" ? JSON.parse(data) : {};
+      if (message.type === "welcome") socket.send(JSON.stringify({ type: "stop", id: 1 }));
+      if (message.type === "answer" || message.type === "refused") resolve(message.refusal ?? "not refused");
+    };
+    socket.onclose = () => resolve("closed");
+  });
+  const text = await answer;
+  socket.close();
+  return text;
+}
+
+/** Ends a pause, so that a stop has an effect that can be seen. Returns what such a stop would change. */
+async function stoppable() {
+  if (main.state.paused) await page.locator("#pause").click();
+  await until("no pause", () => !main.state.paused && speed(main) === 0, DRIVE_S);
+  return { paused: false, left: main.state.left };
+}
+
+/** Asserts that the robot has not been stopped since `before`. */
+async function assertNotStopped(before) {
+  const seen = main.states.length;
+  await until("three more states", () => main.states.length > seen + 3);
+  assert.deepEqual({ paused: main.state.paused, left: main.state.left }, before);
+}
+
+await check("the stick and a gamepad drive, and their release stops", async () => {
+  await page.keyboard.press("t");
+  const box = await page.locator("#stick").boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y - 0.4 * box.height, { steps: 4 });
+  await until("motion ahead", () => main.state.command[0] > 0.1, DRIVE_S);
+  await picture("stick");
+  await page.mouse.up();
+  await until("rest after the stick", () => speed(main) === 0);
+  const hold = (axes) => page.evaluate((axes) => (navigator.getGamepads = () => (axes ? [{ connected: true, axes }] : [null])), axes);
+  await hold([-1, 0, 0]);
+  await until("a turn to the left", () => main.state.command[1] > 0.1, DRIVE_S);
+  await hold([0.05, 0.05, 0.05]);
+  await until("rest in the dead zone", () => speed(main) === 0);
+  await hold([0, 1, 0]);
+  await until("motion back", () => main.state.command[0] < -0.05, DRIVE_S);
+  await hold(null);
+  await until("rest without a gamepad", () => speed(main) === 0);
+  await page.keyboard.press("Escape");
+});
+
+await check("goals are queued without the shift key, paused, and dropped by the stop", async () => {
+  await page.keyboard.press("0");
+  await settled();
+  await page.keyboard.press("g");
+  await page.locator("#queue-toggle").click();
+  for (const place of await windowOf([[0.4, 0], [0.3, 0.2]])) {
+    const before = main.state.left.length;
+    await page.mouse.click(...place);
+    await until("one more goal", () => main.state.left.length === before + 1);
+  }
+  assert.equal(main.state.left.length, 2);
+  await page.locator("#pause").click();
+  await until("a pause with both goals", () => main.state.paused && main.state.left.length === 2);
+  await page.keyboard.press(" ");
+  await until("no mission", () => main.state.left.length === 0);
+  await page.locator("#queue-toggle").click();
+  assert.equal(await page.locator("#queue-toggle").getAttribute("aria-pressed"), "false");
+  await page.keyboard.press("Escape");
+});
+
 await check("a second viewer sees who holds the wheel and drives nothing", async () => {
   const viewer = await open(program.view);
   await until("the wheel", async () => (await text(viewer.page, "wheel-text")).includes("holds the wheel"));
   assert.equal(await viewer.page.locator("#stop").isVisible(), false);
   assert.equal(await viewer.page.locator("#explore").isVisible(), false);
+  // The keys of a viewer's page, a request and a message of its link: none of them stops the robot.
+  const before = await stoppable();
   await viewer.page.keyboard.press(" ");
+  const { origin, hash } = new URL(program.view);
+  const request = await fetch(`${origin}/stop`, { method: "POST", headers: { Origin: origin, Authorization: `Bearer ${hash.slice(1)}` } });
+  assert.equal(request.status, 403);
+  assert.match(await viewer.page.evaluate(stopByLink, program.view), /viewing only/);
+  await assertNotStopped(before);
   await picture("view-only", viewer.page);
   await viewer.context.close();
   const driver = await open(program.drive);
@@ -552,6 +634,7 @@ await check("a page of another origin can neither look nor drive", async () => {
   const foreign = await context.newPage();
   await foreign.goto(`http://127.0.0.1:${server.address().port}/`);
   const { host, hash } = new URL(program.drive);
+  const before = await stoppable();
   const result = await foreign.evaluate(
     async ([host, token]) => {
       const socket = new WebSocket(`ws://${host}/live`);
@@ -567,7 +650,8 @@ await check("a page of another origin can neither look nor drive", async () => {
     [host, hash.slice(1)],
   );
   assert.deepEqual({ ...result, stop: "" }, { link: "refused", read: "refused", stop: "", token_stop: "refused" });
-  assert.equal(main.state.paused, main.states.at(-1).state.paused);
+  // The browser sends the plain request and hides the answer: the robot must not have stopped.
+  await assertNotStopped(before);
   await context.close();
   server.close();
 });
@@ -672,6 +756,11 @@ await check("the time line moves pose, ellipse, path, state and plots back", asy
     return { pose: moment.pose, covariance: moment.numbers.covariance, state: window.trundle.moments.stateAt(time) };
   }, shown.time);
   assert.deepEqual([shown.pose, shown.covariance], [same.pose, same.covariance]);
+  await until("another scan than that of now", () => page.evaluate(() => {
+    const { map, moments } = window.trundle;
+    const [then, now] = [map.past.seen, map.seen];
+    return then === moments.at(map.past.time).seen && then.scan.length > 0 && then.scan !== now.scan && then.state.time < now.state.time;
+  }));
   assert(await page.locator("#past-flag").isVisible(), "the time is named above the map");
   assert.equal((await text(page, "past-state")).toLowerCase(), same.state.name);
   assert.equal(await page.locator("#past-reason").textContent(), same.state.reason ?? "");
@@ -679,10 +768,30 @@ await check("the time line moves pose, ellipse, path, state and plots back", asy
   assert.match(words, /^Position, \d+ s ago: 95 % radius [\d.]+ c?m$/);
   assert.match(await page.locator("#past").getAttribute("aria-valuetext"), /^\d+ s ago, \w+/);
   await picture("past");
+  // The drawing of the map's beginning shows less than that of now. A camera without an image of that time says so.
+  const drawn = () => page.evaluate(() => {
+    let count = 0;
+    for (const { chunk } of window.trundle.map.tiles.pictures()) {
+      const { width, height } = chunk.canvas;
+      const { data } = chunk.context.getImageData(0, 0, width, height);
+      for (let i = 3; i < data.length; i += 4) count += data[i] > 0 ? 1 : 0;
+    }
+    return count;
+  });
+  const now = await drawn();
+  await page.evaluate(() => {
+    const slider = document.getElementById("past");
+    slider.value = slider.min;
+    slider.dispatchEvent(new Event("input"));
+  });
+  const then = await drawn();
+  assert(then < 0.9 * now, `${then} cells at the beginning, ${now} now`);
   await page.keyboard.press("End");
+  await page.locator("#past-now").click();
+  assert((await drawn()) >= now, "the map of now is back");
   assert.equal(await past(), null);
   assert.equal(await page.locator("#past-flag").isVisible(), false);
-  return `${words}; ${same.state.name}, ${same.state.reason ?? "no reason"}`;
+  return `${words}; ${same.state.name}, ${same.state.reason ?? "no reason"}; ${then} cells at the beginning, ${now} now`;
 });
 
 /** Number of pixels of the depth image that are drawn with a depth. */
@@ -893,6 +1002,14 @@ await check("on a phone", async () => {
   await phone.page.locator("#panel-open").click();
   await phone.page.waitForTimeout(800);
   await picture("phone-panel", phone.page);
+  // A program that reads aloud needs a name of each control, also of those that are hidden.
+  const nameless = await phone.page.evaluate(() =>
+    [...document.querySelectorAll("button, input, select, canvas")]
+      .filter((one) => !one.closest("[aria-hidden=true]"))
+      .filter((one) => ![one.getAttribute("aria-label"), one.textContent, one.labels?.[0]?.textContent, one.title].some((name) => name?.trim()))
+      .map((one) => one.id || one.outerHTML.slice(0, 80)),
+  );
+  assert.deepEqual(nameless, [], "controls without a name");
   const stop = await phone.page.locator("#stop").boundingBox();
   assert(stop.width >= 80 && stop.height >= 80, "the stop is large enough for a thumb");
   await phone.context.close();
@@ -972,6 +1089,13 @@ await check("sim: the page drives by keys, shows camera and depth, and offers no
     await page.keyboard.press("Space");
     const stopped = await until("stop", () => speed(viewer) === 0);
     await page.keyboard.up("w");
+    await page.keyboard.press("3");
+    if (await isShown(page, "#space")) {
+      await page.locator("#cloud-toggle").click();
+      let cloud;
+      await until("1000 points", async () => (cloud = await cloudOf(page)).count > 1000, DRIVE_S);
+      assert(cloud.room > 0.95 && cloud.floor > 0.02, `cloud of the simulator: room ${cloud.room}, floor ${cloud.floor}, wall ${cloud.wall}`);
+    }
     return `${driven().toFixed(1)} m, at rest ${seconds.toFixed(2)} s after the keys, ${stopped.toFixed(2)} s after STOP`;
   }),
 );

@@ -17,7 +17,7 @@ import { SpaceView } from "./space_view";
 import { startTheme, toggleTheme } from "./theme";
 import { Timeline } from "./timeline";
 import { MapTools, type Tool } from "./tools";
-import type { ByteMessage, DepthMessage, Pose, Reply, RobotState, Setting, Welcome } from "./wire";
+import { WIRE_VERSION, type ByteMessage, type DepthMessage, type Pose, type Reply, type RobotState, type Setting, type Welcome } from "./wire";
 
 startTheme(() => {
   map.recolor();
@@ -76,13 +76,7 @@ const tools = new MapTools(canvas, map, () => state?.pose[2] ?? 0, annotations.t
 const teleop = new Teleop(element("stick"), element("knob"), (v, omega) => link.send({ type: "drive", v, omega }));
 
 /** For tests in a browser, and for the curious: the map, the view of space, the last minutes, and a place of the window where a wall is drawn. */
-const inspected: { map: MapView; space: SpaceView; moments: Moments; wallPixel: typeof wallPixel; settings: Setting[] } = {
-  map,
-  space,
-  moments,
-  wallPixel,
-  settings: [],
-};
+const inspected = { map, space, moments, wallPixel, settings: [] as Setting[], wireVersion: WIRE_VERSION };
 Object.assign(window, { trundle: inspected });
 
 map.onMove = placeOverlays;

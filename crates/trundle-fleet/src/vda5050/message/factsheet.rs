@@ -87,10 +87,10 @@ fn actions() -> Vec<Value> {
         let parameters = ability.parameters.iter().map(|(key, kind, is_optional)| {
             json!({ "key": key, "valueDataType": kind, "isOptional": is_optional })
         });
+        // The optional field `blockingTypes` is left out: the schema of version 2.1 demands an array that is one of three texts.
         json!({
             "actionType": ability.action_type, "actionDescription": ability.description,
             "actionScopes": ability.scopes(), "actionParameters": parameters.collect::<Vec<_>>(),
-            "blockingTypes": ["NONE", "SOFT", "HARD"],
         })
     };
     ABILITIES.iter().map(action).collect()
