@@ -434,7 +434,7 @@ await check("the map is saved as files", async () => {
 await check("a map of the folder is loaded by two presses, and the robot gets its pose", async () => {
   const maps = join(place, "maps");
   const headers = { Authorization: `Bearer ${new URL(program.drive).hash.slice(1)}` };
-  for (const [from, to] of [["map.pgm", "map.pgm"], ["map.yaml", "home.yaml"]]) {
+  for (const [from, to] of [["map.pgm", "map.pgm"], ["map.yaml", "home.yaml"], ["zones.geojson", "home.geojson"]]) {
     const response = await fetch(new URL(`/files/${from}`, program.drive), { headers });
     writeFileSync(join(maps, to), Buffer.from(await response.arrayBuffer()));
   }
@@ -460,6 +460,7 @@ await check("a map of the folder is loaded by two presses, and the robot gets it
   await page.mouse.up();
   await until("a pose", () => Math.hypot(main.state.pose[0] - x, main.state.pose[1] - y) < 0.3 && main.state.covariance[0] < 0.1);
   await page.keyboard.press("Escape");
+  await until("the place of the map's file", async () => (await entries()).some((text) => text.includes("desk")));
   return `${main.state.state}, ${main.state.reason ?? "no reason"}`;
 });
 

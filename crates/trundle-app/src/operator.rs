@@ -25,7 +25,7 @@ pub use depth_view::{DepthPicture, DepthView, DepthViewpoint};
 pub(crate) use image_feed::ImageFeed;
 pub use link::{Operator, OperatorError, OperatorLink, operator_link};
 pub use map_file::{ZONES_FILE, map_file};
-pub use map_folder::MapFolder;
+pub use map_folder::{FolderMap, MapFolder};
 pub(crate) use perception_feed::PerceptionFeed;
 pub use replay_options::refuse_for_replay;
 pub use request::OperatorRequest;

@@ -67,8 +67,8 @@ pub use laser_log::{
 pub use map::{
     GraphFile, KeepOutFile, MAX_CELL_M, MIN_CELL_M, MapDescription, MapFile, MapImage, NamedArea, PictureMap,
     SpeedFile, annotations_text, areas_text, degrees_hint, map_files, map_pgm, map_picture, map_yaml,
-    picture_size, read_annotations, read_graph, read_keep_out_mask, read_map, read_map_file,
-    read_picture_map, read_places, read_speed_mask, write_map, write_map_as, write_speed_mask,
+    parse_annotations, picture_size, read_annotations, read_graph, read_keep_out_mask, read_map,
+    read_map_file, read_picture_map, read_places, read_speed_mask, write_map, write_map_as, write_speed_mask,
 };
 pub use output::{
     CommandOutputs, InputFiles, OutputFile, OutputFolder, RecordingFolder, abandon_outputs,

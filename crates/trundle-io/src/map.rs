@@ -12,7 +12,7 @@ mod source;
 mod turned;
 mod yaml;
 
-pub use annotations::{annotations_text, read_annotations};
+pub use annotations::{annotations_text, parse_annotations, read_annotations};
 pub use areas::{NamedArea, areas_text};
 pub use degrees::degrees_hint;
 pub use graph::{GraphFile, read_graph};

@@ -16,6 +16,8 @@ pub(super) struct AnnotationStore {
     /// Number of the last request sent before the map was replaced; 0 before any replacement. Changes up to this number belong to an
     /// earlier map.
     pub(super) last_of_earlier_map: u64,
+    /// Zones and places of a map that was sent, and the number of that request.
+    pub(super) of_sent_map: Option<(u64, MapAnnotations)>,
 }
 
 impl AnnotationStore {
@@ -36,6 +38,12 @@ impl AnnotationStore {
     /// Clears annotations and file: those of the old map do not belong to the new one. `last`: number of the last request sent.
     pub(super) fn note_map_replaced(&mut self, last: u64) {
         *self = Self { waiting: self.waiting, last_of_earlier_map: last, ..Self::default() };
+    }
+
+    /// Zones and places of the map of the executed request `id`, if it had some. They are forgotten here.
+    pub(super) fn take_of_sent_map(&mut self, id: u64) -> Option<MapAnnotations> {
+        let (_, annotations) = self.of_sent_map.take_if(|(sent, _)| *sent == id)?;
+        Some(annotations)
     }
 
     /// Whether a request changes the zones or places of an earlier map; the robot must not apply such a request to the present map.

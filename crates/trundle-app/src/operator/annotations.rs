@@ -3,7 +3,7 @@
 use super::annotation_edit::AnnotationEdit;
 use super::link::{Operator, OperatorError};
 use std::sync::Arc;
-use trundle_core::{MapAnnotations, Pose2};
+use trundle_core::{MapAnnotations, OccupancyGrid, Pose2};
 use trundle_io::{annotations_text, replace_file};
 use trundle_runtime::OperatorCommand;
 
@@ -32,6 +32,17 @@ impl Operator {
         };
         let kept = file.map_or(Ok(()), |file| replace_file(&file, text.as_bytes()));
         kept.map_err(|error| OperatorError::NotKept(error.to_string()))
+    }
+
+    /// Gives the robot a map with its zones and places. They replace those of the old map once the robot has the new one.
+    ///
+    /// # Errors
+    /// When the map is too large, too many requests wait, or the run is over.
+    pub fn load_map(&self, grid: OccupancyGrid, annotations: MapAnnotations) -> Result<(), OperatorError> {
+        let mut store = self.annotation_store();
+        let id = self.send(OperatorCommand::LoadMap(Box::new(grid)))?;
+        store.of_sent_map = Some((id, annotations));
+        Ok(())
     }
 
     /// The goal pose of the place of this name, map frame.
@@ -93,6 +104,37 @@ mod tests {
         assert_eq!((executed.places.len(), executed.places[0].name.as_str()), (1, "door"));
         assert_eq!((executed, link.next_request()), ((*operator.annotations()).clone(), None));
         assert_eq!(operator.annotation_store().waiting, 0);
+    }
+
+    #[test]
+    fn the_zones_of_a_loaded_map_come_with_it_and_not_without() {
+        let own = MapAnnotations { places: vec![desk()], ..MapAnnotations::default() };
+        let grid = OccupancyGrid::from_ascii(0.05, "#.").unwrap();
+        for is_replaced in [true, false] {
+            let (operator, mut link) = operator_link();
+            let old = NamedPlace { name: "old".to_owned(), ..desk() };
+            operator.edit_annotations(&AnnotationEdit::SetPlace(old)).unwrap();
+            let first = link.next_request().unwrap();
+            link.note_request(&first);
+            link.note_executed(first.id, &StepReport::default());
+            operator.load_map(grid.clone(), own.clone()).unwrap();
+            let load = link.next_request().unwrap();
+            link.note_request(&load);
+            let mut report = StepReport::default();
+            report.map_replaced = is_replaced;
+            link.note_executed(load.id, &report);
+            let sent = link.next_request();
+            if is_replaced {
+                let sent = sent.unwrap();
+                link.note_request(&sent);
+                assert_eq!(sent.command, OperatorCommand::Annotate(own.clone()));
+                assert_eq!(*operator.annotations(), own);
+            } else {
+                assert_eq!(sent, None);
+                assert_eq!(operator.annotations().places[0].name, "old");
+            }
+            assert_eq!(operator.annotation_store().waiting, 0);
+        }
     }
 
     #[test]

@@ -236,18 +236,25 @@ impl OperatorLink {
         }
     }
 
-    /// Records the effect of the request `id`. Zones and places belong to the map: a robot on another map has none, and the file of the old
-    /// ones does not change.
+    /// Records the effect of the request `id`. Zones and places belong to the map: a robot on another map has those that came with it, and
+    /// the file of the old ones does not change.
     pub(crate) fn note_executed(&mut self, id: u64, report: &StepReport) {
         if report.mission_replaced {
             self.feed.note_mission(id);
         }
-        if report.map_replaced {
-            self.feed.note_map_replaced();
-            let operator = self.operator();
-            // The lock of the store is held while a change is sent: each one is before the number or is made without the old map.
-            let mut store = operator.annotation_store();
-            store.note_map_replaced(self.shared.requests.last());
+        let operator = self.operator();
+        // The lock of the store is held while a change is sent: each one is before the number or is made without the old map.
+        let mut store = operator.annotation_store();
+        let own = store.take_of_sent_map(id);
+        if !report.map_replaced {
+            return;
+        }
+        self.feed.note_map_replaced();
+        store.note_map_replaced(self.shared.requests.last());
+        if let Some(annotations) = own.filter(|own| *own != MapAnnotations::default()) {
+            self.shared.requests.send_first(OperatorCommand::Annotate(annotations.clone()));
+            store.waiting += 1;
+            store.newest = Arc::new(annotations);
         }
     }
 

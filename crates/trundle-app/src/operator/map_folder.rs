@@ -5,8 +5,8 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use trundle_core::{MAX_TEXT_CELLS, OccupancyGrid};
-use trundle_io::{MapDescription, picture_size};
+use trundle_core::{MAX_TEXT_CELLS, MapAnnotations, OccupancyGrid};
+use trundle_io::{IoError, MapDescription, parse_annotations, picture_size};
 use trundle_runtime::{RobotConfig, require_loadable};
 
 /// Maximum number of offered names. Source: ours.
@@ -16,7 +16,19 @@ const MAX_YAML_BYTES: u64 = 64 * 1024;
 /// Largest picture of a map \[bytes\]: a PGM of 16 bits with the most cells that are recorded, and its header. Source: ours.
 const MAX_PICTURE_BYTES: u64 = 2 * MAX_TEXT_CELLS as u64 + 64 * 1024;
 
-/// A folder of maps for a robot: each `NAME.yaml` with its picture.
+/// Largest file of zones and places \[bytes\]. Source: ours; 1,000 zones of ten corners have 400 kB.
+const MAX_ZONES_BYTES: u64 = 4 << 20;
+
+/// A map of the folder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FolderMap {
+    /// The cells.
+    pub grid: OccupancyGrid,
+    /// Zones and named places; none without a file of them.
+    pub annotations: MapAnnotations,
+}
+
+/// A folder of maps for a robot: each `NAME.yaml` with its picture, and with `NAME.geojson` if the map has zones and named places.
 #[derive(Debug, Clone)]
 pub struct MapFolder {
     folder: PathBuf,
@@ -104,23 +116,34 @@ impl MapFolder {
     /// # Errors
     /// When no map has this name, its files are broken, too large or outside the folder, or the robot cannot accept the map. The error
     /// contains nothing of the files' content. Details are logged only, because the caller may lack the right to read the files.
-    pub fn read(&self, name: &str) -> Result<OccupancyGrid, String> {
+    pub fn read(&self, name: &str) -> Result<FolderMap, String> {
         // Only listed names are accepted, so no path leaves the folder.
         if !self.all_names().iter().any(|known| known == name) {
             return Err(format!("There is no map '{name}' in the folder of maps."));
         }
-        self.read_files(name).map_err(|problem| format!("Map '{name}': {problem}."))
+        let files = self.read_grid(name).and_then(|grid| {
+            let annotations = self.read_annotations(name)?;
+            Ok(FolderMap { grid, annotations })
+        });
+        files.map_err(|problem| format!("Map '{name}': {problem}."))
     }
 
-    fn read_files(&self, name: &str) -> Result<OccupancyGrid, String> {
+    /// A map whose zones cannot be read is refused: without its no-go zones the robot would drive there.
+    fn read_annotations(&self, name: &str) -> Result<MapAnnotations, String> {
+        let path = self.folder.join(format!("{name}.geojson"));
+        if path.symlink_metadata().is_err_and(|error| error.kind() == ErrorKind::NotFound) {
+            return Ok(MapAnnotations::default());
+        }
+        let text = self.read_file("its file of zones", &path, MAX_ZONES_BYTES)?;
+        let text = String::from_utf8(text).map_err(|_| "its file of zones is not UTF-8 text".to_owned())?;
+        parse_annotations(&path, &text).map_err(|error| broken(name, &error))
+    }
+
+    fn read_grid(&self, name: &str) -> Result<OccupancyGrid, String> {
         let path = self.folder.join(format!("{name}.yaml"));
         let yaml = self.read_file("its YAML file", &path, MAX_YAML_BYTES)?;
         let yaml = String::from_utf8(yaml).map_err(|_| "its YAML file is not UTF-8 text".to_owned())?;
-        let broken = |error| {
-            tracing::warn!("the map '{name}' cannot be loaded: {error}");
-            "its files are broken; the place is in the log of the program".to_owned()
-        };
-        let description = MapDescription::parse(&path, yaml).map_err(broken)?;
+        let description = MapDescription::parse(&path, yaml).map_err(|error| broken(name, &error))?;
         let picture = self.read_file("its picture", description.picture_path(), MAX_PICTURE_BYTES)?;
         // A packed picture of few bytes may claim any size.
         if let Some((width, height)) = picture_size(&picture)
@@ -130,7 +153,7 @@ impl MapFolder {
                 "its picture has {width} x {height} cells, expected at most {MAX_TEXT_CELLS} in all"
             ));
         }
-        let grid = description.map(&picture).map_err(broken)?.grid;
+        let grid = description.map(&picture).map_err(|error| broken(name, &error))?.grid;
         require_loadable(grid.geometry(), &self.robot).map_err(|invalid| invalid.to_string())?;
         Ok(grid)
     }
@@ -147,6 +170,12 @@ impl MapFolder {
     }
 }
 
+/// Logs what is wrong in the files of a map; the refusal without their content.
+fn broken(name: &str, error: &IoError) -> String {
+    tracing::warn!("the map '{name}' cannot be loaded: {error}");
+    "its files are broken; the place is in the log of the program".to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -158,6 +187,28 @@ mod tests {
         std::fs::write(place.join(format!("{name}.yaml")), yaml).unwrap();
         std::fs::write(place.join(format!("{name}.pgm")), map_pgm(&grid)).unwrap();
         grid
+    }
+
+    fn without_zones(grid: OccupancyGrid) -> FolderMap {
+        FolderMap { grid, annotations: MapAnnotations::default() }
+    }
+
+    #[test]
+    fn zones_come_with_their_map_and_a_map_with_broken_ones_is_refused() {
+        let place = tempfile::tempdir().unwrap();
+        write(place.path(), "home", 0.05);
+        let mut annotations = MapAnnotations::default();
+        let pose = trundle_core::Pose2::new(0.5, 0.25, 0.0);
+        annotations.places.push(trundle_core::NamedPlace { id: 1, name: "desk".to_owned(), pose });
+        let file = place.path().join("home.geojson");
+        std::fs::write(&file, trundle_io::annotations_text(&annotations)).unwrap();
+        assert_eq!(maps(place.path()).read("home").unwrap().annotations, annotations);
+        std::fs::write(&file, "hunter2: [").unwrap();
+        let refusal = maps(place.path()).read("home").unwrap_err();
+        assert_eq!(refusal, "Map 'home': its files are broken; the place is in the log of the program.");
+        std::fs::write(&file, [0xff]).unwrap();
+        let refusal = maps(place.path()).read("home").unwrap_err();
+        assert_eq!(refusal, "Map 'home': its file of zones is not UTF-8 text.");
     }
 
     fn maps(place: &Path) -> MapFolder {
@@ -172,7 +223,7 @@ mod tests {
         std::fs::write(place.path().join("broken.yaml"), "image: none.pgm").unwrap();
         let maps = maps(place.path());
         assert_eq!(maps.names(), ["broken", "coarse", "ground floor"]);
-        assert_eq!(maps.read("ground floor").unwrap(), ground);
+        assert_eq!(maps.read("ground floor").unwrap(), without_zones(ground));
         for wrong in ["../ground floor", "inner/x", "", "broken", "coarse"] {
             assert!(maps.read(wrong).is_err(), "{wrong}");
         }
@@ -202,7 +253,7 @@ mod tests {
         assert_eq!(maps.clone().cut_warning(MAX_NAMES + 1), None, "once for the page and its copies");
         let names = maps.names();
         assert_eq!((names.len(), names.last().map(String::as_str)), (MAX_NAMES, Some("199")));
-        assert_eq!(maps.read("zz").unwrap(), last);
+        assert_eq!(maps.read("zz").unwrap(), without_zones(last));
         let new = MapFolder { is_cut_told: Arc::default(), ..maps };
         assert_eq!(new.cut_warning(MAX_NAMES), None);
         let warning = new.cut_warning(MAX_NAMES + 1).unwrap();
@@ -230,7 +281,7 @@ mod tests {
         picture("linked", "linked.pgm");
         picture("text", "own.yaml");
         let maps = maps(place.path());
-        assert_eq!(maps.read("alias").unwrap(), inside, "a link within the folder");
+        assert_eq!(maps.read("alias").unwrap().grid, inside, "a link within the folder");
         let refusal = |name: &str| maps.read(name).unwrap_err();
         let outside = "is missing or outside the folder of maps.";
         for name in ["key", "link"] {

@@ -60,6 +60,13 @@ impl RequestSender {
         Ok(id)
     }
 
+    /// Puts a valid command before all waiting requests, also in a full queue. Only the run does so, once per request.
+    pub(super) fn send_first(&self, command: OperatorCommand) {
+        let mut waiting = lock(&self.waiting);
+        let request = waiting.numbered(command);
+        waiting.requests.push_front(request);
+    }
+
     /// Number of the last request that was sent.
     pub(super) fn last(&self) -> u64 {
         lock(&self.waiting).last

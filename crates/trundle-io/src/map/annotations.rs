@@ -26,8 +26,15 @@ use trundle_core::{MapAnnotations, NamedPlace, Pose2, Zone, ZoneKind};
 /// When the file cannot be read, is no such JSON, or a zone or place is invalid. Names the feature.
 pub fn read_annotations(path: &Path) -> Result<MapAnnotations, IoError> {
     Expected::Annotations.check(path)?;
-    let text = read_text(path)?;
-    let value: Value = serde_json::from_str(&text).map_err(|error| {
+    parse_annotations(path, &read_text(path)?)
+}
+
+/// Zones and places from the text of a file of [`read_annotations`]; `path` it has, for errors.
+///
+/// # Errors
+/// As [`read_annotations`], without those of reading.
+pub fn parse_annotations(path: &Path, text: &str) -> Result<MapAnnotations, IoError> {
+    let value: Value = serde_json::from_str(text).map_err(|error| {
         let problem =
             format!("is not JSON at column {}, expected a GeoJSON FeatureCollection", error.column());
         IoError::line(path, error.line().max(1), problem)

@@ -228,7 +228,7 @@ async function loadMap(): Promise<void> {
   const name = element<HTMLSelectElement>("map-name").value;
   if (performance.now() - loadPressed > LOAD_PRESS_MS) {
     loadPressed = performance.now();
-    toast("Press Load again: the robot stops, drops mission, zones and places, and must find out where it stands.", "warn");
+    toast("Press Load again: the robot stops, drops its mission, takes the zones and places of the new map, and must find out where it stands.", "warn");
     return;
   }
   loadPressed = -Infinity;

@@ -11,8 +11,8 @@ use goal_check::require_free;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
-use trundle_app::operator::{AnnotationEdit, MapFolder, Operator};
-use trundle_core::{DriveLimits, OccupancyGrid, Pose2, Twist2, Zone, require_in};
+use trundle_app::operator::{AnnotationEdit, FolderMap, MapFolder, Operator};
+use trundle_core::{DriveLimits, Pose2, Twist2, Zone, require_in};
 use trundle_planning::{FootprintCheck, require_on_map};
 use trundle_runtime::{Mission, OperatorCommand, PoseGuess, RunSetting, Task};
 
@@ -181,18 +181,18 @@ impl RunSteering {
     ///
     /// # Errors
     /// When no folder of maps was given, or it has no such map for this robot.
-    pub fn read_map(&self, name: &str) -> Result<OccupancyGrid, CommandRefusal> {
+    pub fn read_map(&self, name: &str) -> Result<FolderMap, CommandRefusal> {
         let maps = self.maps.as_ref();
         let maps = maps.ok_or_else(|| CommandRefusal::of("No folder of maps was given: --maps DIR"))?;
         maps.read(name).map_err(CommandRefusal::of)
     }
 
-    /// Gives the robot a map.
+    /// Gives the robot a map with its zones and places.
     ///
     /// # Errors
     /// When the robot refuses the map, or the run is over.
-    pub fn load_map(&self, grid: OccupancyGrid) -> Result<(), CommandRefusal> {
-        self.send(OperatorCommand::LoadMap(Box::new(grid)))
+    pub fn load_map(&self, map: FolderMap) -> Result<(), CommandRefusal> {
+        Ok(self.operator.load_map(map.grid, map.annotations)?)
     }
 
     fn begin(&self, tasks: Vec<Task>) -> Result<(), CommandRefusal> {

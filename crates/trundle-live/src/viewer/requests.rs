@@ -115,9 +115,9 @@ impl Viewer<'_> {
                 return;
             }
             let read = read.unwrap_or_else(|_| Err(CommandRefusal::of("The map cannot be read.")));
-            let loaded = read.and_then(|grid| {
+            let loaded = read.and_then(|map| {
                 require_wheel(&state, viewer)?;
-                state.steering.load_map(grid)
+                state.steering.load_map(map)
             });
             if let Some(reply) = answer(Some(id), loaded)
                 && answers.send(reply).await.is_err()
