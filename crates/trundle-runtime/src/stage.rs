@@ -33,6 +33,8 @@ pub enum Stage {
     Supervision,
     /// Grid to path, curve and trajectory.
     Planning,
+    /// The state machine: checks, transitions and the state's own command, without the stages that it runs.
+    Behaviour,
     /// Trajectory and pose to twist.
     Control,
     /// Braking distance against scan and map.
@@ -41,7 +43,7 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in the order of the data.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Odometry,
         Self::Decoding,
         Self::Slam,
@@ -54,6 +56,7 @@ impl Stage {
         Self::DynamicObstacles,
         Self::Supervision,
         Self::Planning,
+        Self::Behaviour,
         Self::Control,
         Self::Safety,
     ];
@@ -73,6 +76,7 @@ impl Stage {
             Self::DynamicObstacles => "dynamic_obstacles",
             Self::Supervision => "supervision",
             Self::Planning => "planning",
+            Self::Behaviour => "behaviour",
             Self::Control => "control",
             Self::Safety => "safety",
         }
@@ -111,6 +115,20 @@ impl StageTimes {
         let result = work();
         self.note(stage, start.elapsed());
         result
+    }
+
+    /// Runs `work`, which may measure other stages, and records its time without theirs.
+    pub fn measure_rest<T>(&mut self, stage: Stage, work: impl FnOnce(&mut Self) -> T) -> T {
+        let (start, before) = (Instant::now(), self.sum_ms());
+        let result = work(self);
+        let others = Duration::from_secs_f64((self.sum_ms() - before).max(0.0) * 1e-3);
+        self.note(stage, start.elapsed().saturating_sub(others));
+        result
+    }
+
+    /// Time of all stages so far, ms.
+    fn sum_ms(&self) -> f64 {
+        self.spent.iter().map(Histogram::sum).sum()
     }
 
     /// Adds the times of another measurement.
@@ -160,6 +178,17 @@ mod tests {
         assert!((cost.median_ms / 51.0 - 1.0).abs() < 0.01 && (cost.p99_ms / 100.0 - 1.0).abs() < 0.01);
         assert_eq!((cost.runs, cost.max_ms.round(), cost.total_s), (101, 101.0, 5.151));
         assert_eq!(times.cost(Stage::Scan), None);
+    }
+
+    #[test]
+    fn the_rest_is_without_the_stages_that_are_measured_in_it() {
+        let mut times = StageTimes::default();
+        let pause = Duration::from_millis(200);
+        times.measure_rest(Stage::Behaviour, |times| {
+            times.measure(Stage::Control, || std::thread::sleep(pause));
+        });
+        assert_eq!((times.runs(Stage::Behaviour), times.runs(Stage::Control)), (1, 1));
+        assert!(times.total(Stage::Control) >= 0.2 && times.total(Stage::Behaviour) < 0.1);
     }
 
     #[test]

@@ -134,15 +134,21 @@ impl Navigator {
 
     /// Executes one control step: an optional new plan, a command, and the check by the safety monitor.
     pub(crate) fn step(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> Decision {
+        let replanned = times.measure_rest(Stage::Behaviour, |times| self.choose(s, times));
+        let twist = times.measure(Stage::Safety, || self.guard(s));
+        self.tools.follower.sent(twist);
+        Decision { twist, replanned }
+    }
+
+    /// Chooses state and command; returns whether there is a new plan.
+    fn choose(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> bool {
         self.prepare(s);
         let (machine, tools) = (&mut self.machine, &mut self.tools);
         let replanned = machine.plan(tools, s, times);
         let follow = times.measure(Stage::Control, || tools.follower.step(&s.estimate, s.now));
         machine.follow(tools, &follow, s, times);
         self.wanted = machine.tick(tools, &follow, s, times);
-        let twist = times.measure(Stage::Safety, || self.guard(s));
-        self.tools.follower.sent(twist);
-        Decision { twist, replanned }
+        replanned
     }
 
     /// Updates the data that all states share: zones, the opening, and the checks of pose, progress and view.
