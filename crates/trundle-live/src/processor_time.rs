@@ -1,5 +1,14 @@
 //! Processor time of the program.
 
+use std::sync::LazyLock;
+use std::time::Instant;
+
+/// Time since the first call, by a clock that never jumps \[s\].
+pub fn clock_s() -> f64 {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    START.elapsed().as_secs_f64()
+}
+
 /// Processor time of all threads of the program so far \[s\]; `None` if the system does not report it.
 #[cfg(unix)]
 pub fn processor_time_s() -> Option<f64> {

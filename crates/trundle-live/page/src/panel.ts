@@ -41,8 +41,8 @@ function setText(id: string, text: string): void {
 
 export class Panel {
   private rated: Pick<RobotState, "time" | "counts" | "stages"> | null = null;
-  /** Processor time of the program at a time of this page, for the next part of a core. */
-  private worked: { at: number; processor: number } | null = null;
+  /** Processor time and clock of the program at the last part of a core that was shown. */
+  private worked: RobotState["processor"] = null;
   private spoken = "";
   private tasks = "";
 
@@ -114,14 +114,13 @@ export class Panel {
     this.rated = state;
   }
 
-  /** The part of a core that the program takes by the clock of this page: a simulated robot has another one. */
-  private showProcessor(processor: number | null): void {
-    if (processor === null) return;
-    const now = { at: performance.now() / 1000, processor };
+  /** The part of a core that the program takes by its own clock: a simulated robot has another one, and messages may be late. */
+  private showProcessor(now: RobotState["processor"]): void {
+    if (!now) return;
     this.worked ??= now;
-    const dt = now.at - this.worked.at;
-    if (dt < RATE_PERIOD_S) return;
-    if (processor >= this.worked.processor) setText("processor", `${((100 * (processor - this.worked.processor)) / dt).toFixed(0)} % of a core`);
+    const [work, clock] = [now[0] - this.worked[0], now[1] - this.worked[1]];
+    if (Math.abs(clock) < RATE_PERIOD_S) return;
+    if (clock > 0) setText("processor", `${((100 * work) / clock).toFixed(0)} % of a core`);
     this.worked = now;
   }
 

@@ -32,8 +32,8 @@ export interface RobotState {
   station: Pose | null;
   counts: [slam: number, mapping: number, control: number, dropped: number];
   stages: [name: string, seconds: number][];
-  /** Processor time of the program [s]; null where the system does not say it. */
-  processor: number | null;
+  /** Processor time of the program, and time by its clock [s]; null where the system does not say it. */
+  processor: [work: number, clock: number] | null;
   loops: [time: number, x: number, y: number][];
   wheel: { name: string; is_you: boolean } | null;
   viewers: number;

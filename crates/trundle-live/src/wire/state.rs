@@ -1,6 +1,6 @@
 //! The state of the robot as JSON.
 
-use crate::processor_time::processor_time_s;
+use crate::processor_time::{clock_s, processor_time_s};
 use serde::Serialize;
 use trundle_app::operator::RunView;
 use trundle_planning::MovingObstacle;
@@ -31,8 +31,8 @@ pub struct StateMessage {
     pub counts: [u64; 4],
     /// The stages of the robot with the time of each by the clock so far \[s\].
     pub stages: Vec<(&'static str, f64)>,
-    /// Processor time of the program \[s\]; `None` if the system does not report it.
-    pub processor: Option<f64>,
+    /// Processor time of the program, and time by its clock \[s\]; `None` if the system does not report it.
+    pub processor: Option<[f64; 2]>,
     /// Closed loops: time \[s\], and position of the robot \[m\].
     pub loops: Vec<[f64; 3]>,
     /// The viewer in control; `None` without one.
@@ -126,7 +126,7 @@ impl StateMessage {
             station: around.station.map(|station| [station.x, station.y, station.theta]),
             counts: [counts.slam, counts.mapping, counts.control, counts.dropped_images],
             stages: counts.stages.clone(),
-            processor: processor_time_s(),
+            processor: processor_time_s().map(|work| [work, clock_s()]),
             loops: around.loops.iter().map(|at| [at.stamp.as_secs(), at.pose.x, at.pose.y]).collect(),
             wheel,
             viewers,
