@@ -63,6 +63,8 @@ page.on("websocket", (socket) =>
     views += 1;
   }),
 );
+/** Longest wait for the page [ms]: a loaded machine draws seldom, which is no growth. */
+page.setDefaultTimeout(300_000);
 await page.goto(program.drive);
 const devtools = await page.context().newCDPSession(page);
 await devtools.send("Performance.enable");
