@@ -19,13 +19,9 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     let options = args.ros.options()?;
     let request = args.request();
     let mission = if request.is_empty() { Mission::default() } else { request.mission()? };
-    let mut settings = args.topics();
-    settings.use_sim_time = options.use_sim_time;
-    settings.stamped_commands = options.stamped_commands;
-    settings.base_frame = options.frames.base.clone();
     let wait = Duration::from_secs_f64(args.wait);
     let is_cancelled = || stop::is_requested(|| "the wait for topics".to_owned());
-    let connected = Ros2Robot::connect(&options, settings, &mut robot, wait, is_cancelled)?;
+    let connected = Ros2Robot::connect(&options, args.topics(&options), &mut robot, wait, is_cancelled)?;
     let (node, link, body) = connected.into_parts();
     let mut setup = args.options.setup("ros2", &options.node.names.node, mission, robot)?;
     setup.is_operated = args.stays();

@@ -8,6 +8,7 @@ use crate::run::RunOptions;
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::MissionRequest;
+use trundle::ros2::Ros2Options;
 use trundle::ros2::body::BodySettings;
 
 /// `trundle ros2`
@@ -33,6 +34,9 @@ pub struct Ros2Args {
     /// A 2-D laser, instead of scans from depth images.
     #[arg(long, value_name = "TOPIC")]
     pub scan: Option<String>,
+    /// Battery: at a charge of 2 % or less the robot stops. Not for drivers that report 0 for an unknown charge.
+    #[arg(long, value_name = "TOPIC", hide_short_help = true)]
+    pub battery: Option<String>,
     /// Network and names.
     #[command(flatten)]
     pub ros: RosArgs,
@@ -64,14 +68,15 @@ pub struct Ros2Args {
 
 impl Ros2Args {
     /// The robot's topics.
-    pub fn topics(&self) -> BodySettings {
-        let mut settings = BodySettings::default();
+    pub fn topics(&self, options: &Ros2Options) -> BodySettings {
+        let mut settings = BodySettings::of(options);
         settings.color = self.color.clone();
         settings.depth = self.depth.clone();
         settings.camera_info = self.camera_info.clone();
         settings.depth_info = self.depth_info.clone();
         settings.imu = (self.imu != "none").then(|| self.imu.clone());
         settings.scan = self.scan.clone();
+        settings.battery = self.battery.clone();
         settings
     }
 
@@ -84,5 +89,28 @@ impl Ros2Args {
     pub fn request(&self) -> MissionRequest {
         let goals = self.goal.iter().map(|goal| goal.0).collect();
         MissionRequest { goals, explore: self.explore, dock: false, file: self.mission.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command_line::{Cli, Command};
+    use clap::Parser;
+    use trundle::ros2::Ros2Options;
+    use trundle::ros2::body::BodySettings;
+    use trundle::ros2::node::Networks;
+
+    fn topics(given: &[&str]) -> BodySettings {
+        let options = Ros2Options::read("trundle", Some(0), Networks::Loopback, &[]).unwrap();
+        let Command::Ros2(args) = Cli::parse_from([&["trundle", "ros2"][..], given].concat()).command else {
+            panic!("another command")
+        };
+        args.topics(&options)
+    }
+
+    #[test]
+    fn a_battery_is_read_only_from_a_given_topic() {
+        assert_eq!(topics(&[]).battery, None);
+        assert_eq!(topics(&["--battery", "battery_state"]).battery.as_deref(), Some("battery_state"));
     }
 }

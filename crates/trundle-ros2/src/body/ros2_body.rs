@@ -13,8 +13,8 @@ use crate::convert::stamp;
 use crate::generated::rosgraph_msgs::Clock;
 use crate::generated::tf2_msgs::TFMessage;
 use crate::node::{NodeThread, RosNode, TopicMonitor, qos};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use trundle_app::AppError;
 use trundle_app::real_time::{EventFeed, LiveBody, TimedEvent};
@@ -62,17 +62,7 @@ impl Ros2Body {
     ) -> Result<Self, Ros2Error> {
         let clock = if settings.use_sim_time { RosClock::simulated() } else { RosClock::system() };
         let diagnostics = node.diagnostics();
-        let shared = Arc::new(Shared {
-            sink: Mutex::default(),
-            frames: Mutex::new(FrameTree::default()),
-            odometry: Mutex::default(),
-            has_gyro: AtomicBool::default(),
-            uses_gyro: AtomicBool::default(),
-            odom_frame: Mutex::default(),
-            clock: clock.clone(),
-            diagnostics: diagnostics.clone(),
-            start: Instant::now(),
-        });
+        let shared = Arc::new(Shared::new(clock.clone(), diagnostics.clone()));
         let inbox = Arc::new(ImageInbox::new(diagnostics));
         let time = settings.use_sim_time.then(|| subscribe_clock(node, &shared)).transpose()?;
         node.measure_silence_by(clock.clone());
