@@ -8,17 +8,14 @@ use crate::outcome::Outcome;
 use crate::{console, logging, run_output};
 use std::time::Duration;
 use trundle::app::real_time::run_in_real_time;
-use trundle::app::report::mission_text;
 use trundle::app::{AppError, RunLog, stop};
 use trundle::ros2::Ros2Robot;
-use trundle::runtime::Mission;
 
 /// `trundle ros2`.
 pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     let mut robot = args.options.robot.robot()?;
     let options = args.ros.options()?;
-    let request = args.request();
-    let mission = if request.is_empty() { Mission::default() } else { request.mission()? };
+    let mission = args.request().mission()?;
     let wait = Duration::from_secs_f64(args.wait);
     let is_cancelled = || stop::is_requested(|| "the wait for topics".to_owned());
     let connected = Ros2Robot::connect(&options, args.topics(&options), &mut robot, wait, is_cancelled)?;
@@ -28,15 +25,8 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     let setup = args.live.with_zones(setup)?;
     let folder = logging::output_folder(&args.out)?;
     if !args.options.common.quiet {
-        let mission = if args.stays() {
-            "waits for goals; Ctrl-C ends it".to_owned()
-        } else {
-            mission_text(&setup.mission)
-        };
-        console::print(&format!(
-            "ROS 2 domain {}, node {}: {mission}.",
-            options.node.domain, options.node.names.node
-        ));
+        let (node, mission) = (&options.node, setup.mission_line());
+        console::print(&format!("ROS 2 domain {}, node {}: {mission}.", node.domain, node.names.node));
     }
     let (line, progress) = console::progress(args.options.common.quiet);
     let log = if args.stays() { RunLog::brief() } else { RunLog::default() };

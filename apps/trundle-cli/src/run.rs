@@ -32,8 +32,8 @@ pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
     let mut setup = args.options.setup(RUN_COMMAND, &args.base.to_string(), mission, robot)?;
     setup.is_operated = args.live.is_operated();
     #[cfg(feature = "ros2")]
-    {
-        setup.is_operated |= args.ros2;
+    if args.ros_robot.ros2 {
+        setup.is_operated = true;
     }
     if let Some((_, bytes)) = &resumed {
         setup = setup.resumed_from(bytes);
@@ -54,10 +54,7 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
     let (line, progress) = console::progress(args.options.common.quiet);
     let origin = Instant::now();
     #[cfg(feature = "ros2")]
-    let (node, link) =
-        args.ros2.then(|| crate::ros_node::start(&args.ros, &setup.robot, origin)).transpose()?.unzip();
-    #[cfg(feature = "ros2")]
-    let observer = node.as_ref().and_then(trundle::ros2::RobotNode::observer);
+    let (node, link, observer) = args.ros_robot.start(&setup.robot, origin)?;
     #[cfg(not(feature = "ros2"))]
     let (link, observer) = (None, None);
     let (page, front_end) = args.live.front_ends(setup, progress, link, true)?;
@@ -69,7 +66,9 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
         }
         Ok(body)
     };
-    let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), front_end);
+    // A robot that waits for goals may do so for days.
+    let log = if setup.mission.tasks().is_empty() { RunLog::brief() } else { RunLog::default() };
+    let run = run_in_real_time(setup, start, &folder, checkpoint, log, front_end);
     line.finish_and_clear();
     drop(page);
     #[cfg(feature = "ros2")]

@@ -12,6 +12,7 @@ use trundle::runtime::{Mission, RobotConfig};
 
 /// `trundle run`
 #[derive(Debug, Args)]
+#[cfg_attr(feature = "ros2", command(mut_arg("ros2", |ros2| ros2.group("MissionArgs"))))]
 #[command(after_help = "Example: trundle run --base kobuki --camera stream:/tmp/camera --goal 3,1,90\n\n\
     Ctrl-C stops the robot and ends the run. `trundle devices` lists what is plugged in.\n\
     Exit code: 0 mission done and nothing touched, 1 otherwise, 2 bad input or a device that does not answer.")]
@@ -43,14 +44,10 @@ pub struct RunArgs {
     /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/run")]
     pub out: OutputDirArg,
-    /// Publish map, pose and state on ROS 2, and accept goals from there, also after the mission.
-    #[cfg(feature = "ros2")]
-    #[arg(long)]
-    pub ros2: bool,
-    /// Network and names.
+    /// The robot on ROS 2.
     #[cfg(feature = "ros2")]
     #[command(flatten)]
-    pub ros: crate::ros_node::RosArgs,
+    pub ros_robot: crate::ros_node::RosRobotArgs,
 }
 
 /// Options of every run on a live robot.
@@ -122,5 +119,25 @@ impl MissionArgs {
     pub fn request(&self) -> MissionRequest {
         let goals = self.goal.iter().map(|goal| goal.0).collect();
         MissionRequest { goals, explore: self.explore, dock: self.dock, file: self.mission.clone() }
+    }
+}
+
+#[cfg(all(test, feature = "ros2"))]
+mod tests {
+    use crate::command_line::{Cli, Command};
+    use clap::Parser;
+
+    #[test]
+    fn a_run_needs_a_mission_or_ros_2() {
+        let parse = |given: &[&str]| {
+            Cli::try_parse_from([&["trundle", "run", "--camera", "folder:/tmp"][..], given].concat())
+        };
+        let refusal = parse(&[]).unwrap_err().to_string();
+        assert!(refusal.contains("--goal <X,Y,DEG>") && refusal.contains("--ros2"), "{refusal}");
+        assert!(parse(&["--raw-images"]).is_err());
+        for (given, tasks) in [(&["--ros2"][..], 0), (&["--ros2", "--explore"][..], 2), (&["--dock"][..], 1)] {
+            let Command::Run(args) = parse(given).unwrap().command else { panic!("another command") };
+            assert_eq!(args.mission.request().mission().unwrap().tasks().len(), tasks, "{given:?}");
+        }
     }
 }
