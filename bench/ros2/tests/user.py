@@ -111,10 +111,12 @@ def compute_and_follow(checks, user, options):
     sent = user.send("compute_path_to_pose", goal=user.map_pose(FAR), use_start=False)
     result = sent.wait(30)
     path = result.result.path if result else Path()
-    wholes = [whole for whole in user.kept.get("plan", []) if len(whole.poses) > len(path.poses)]
-    checks.check("the topic plan has the whole path", path.poses and any(
-        math.dist(planar(whole.poses[-1].pose)[:2], planar(path.poses[-1].pose)[:2]) < 0.01 for whole in wholes),
-        f"{[len(whole.poses) for whole in wholes]} poses, {len(path.poses)} in the result")
+    wholes = user.kept.setdefault("plan", [])
+    user.until(lambda: wholes, 5)
+    counts = [len(whole.poses) for whole in wholes]
+    checks.check("the topic plan has the whole path", path.poses and max(counts, default=0) > len(path.poses) and
+                 math.dist(planar(wholes[-1].poses[-1].pose)[:2], planar(path.poses[-1].pose)[:2]) < 0.01,
+                 f"{counts} poses, {len(path.poses)} in the result")
     if not checks.check("compute_path_to_pose gives a path", status(result) == "SUCCEEDED" and len(path.poses) > 2, outcome(result)):
         return
     ends = [math.dist(planar(path.poses[i].pose)[:2], relative(user.start, place)[:2]) for i, place in ((0, user.truth()), (-1, FAR))]

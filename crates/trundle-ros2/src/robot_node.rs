@@ -167,7 +167,7 @@ impl Parts {
         let topics = RobotTopics::new(node, &settings)?;
         let active = ActiveGoal::new(operator.clone(), clock.clone(), diagnostics.clone());
         let published_map = PublishedMap::default();
-        navigation::offer(node, &active, &options.frames, &published_map, robot)?;
+        navigation::offer(node, &active, options, &published_map, robot)?;
         Parameters::of(robot, options.use_sim_time).offer(node, &active)?;
         Ok(Self { topics, settings, operator, clock, diagnostics, published_map })
     }
