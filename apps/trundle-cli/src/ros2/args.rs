@@ -2,7 +2,7 @@
 
 use crate::common_args::{NumberArg, NumberText, PoseArg};
 use crate::live::LiveArgs;
-use crate::output_args::OutputDirArg;
+use crate::output_args::{ContinuedFileArg, OutputDirArg};
 use crate::ros_node::RosArgs;
 use crate::run::RunOptions;
 use clap::Args;
@@ -49,6 +49,9 @@ pub struct Ros2Args {
     /// The tasks of a mission file.
     #[arg(long, value_name = "FILE")]
     pub mission: Option<PathBuf>,
+    /// Resume the mission and the maps of a checkpoint, then wait for goals.
+    #[arg(long, value_name = "CHECKPOINT", conflicts_with_all = ["goal", "explore", "mission"])]
+    pub resume: Option<ContinuedFileArg>,
     /// Continue after the mission and wait for goals.
     #[arg(long)]
     pub stay: bool,

@@ -50,6 +50,17 @@ pub struct RunArgs {
     pub ros_robot: crate::ros_node::RosRobotArgs,
 }
 
+impl RunArgs {
+    /// Whether a person or a program may give commands to the run.
+    pub fn is_operated(&self) -> bool {
+        #[cfg(feature = "ros2")]
+        if self.ros_robot.ros2 {
+            return true;
+        }
+        self.live.is_operated()
+    }
+}
+
 /// Options of every run on a live robot.
 #[derive(Debug, Args)]
 pub struct RunOptions {
