@@ -45,7 +45,8 @@ pub enum Ros2Error {
     Thread(#[from] std::io::Error),
     /// A topic that is needed to begin stayed silent.
     #[error(
-        "no usable message was received on {topics} within {seconds} s{reason}; `ros2 topic list` shows what is there, --ros-interface and ROS_DOMAIN_ID which network and domain are used"
+        "no usable message was received on {topics} within {seconds} s{reason}; `ros2 topic list` shows what is there, --ros-interface and ROS_DOMAIN_ID which network and domain are used; with --ros-interface loopback {}",
+        crate::node::DISCOVERY
     )]
     Silent {
         /// The topics.

@@ -17,6 +17,7 @@ pub fn serve(args: &SimArgs, name: &str) -> Result<Outcome, AppError> {
     if !args.common.quiet {
         let (domain, drive) = (options.node.domain, "trundle ros2 --ros-args -p use_sim_time:=true");
         console::print(&format!("A robot in '{name}' answers on ROS 2 domain {domain}. Drive it: {drive}"));
+        options.node.networks.discovery_hint().into_iter().for_each(console::print);
     }
     let limit = args.driver.duration.unwrap_or(f64::INFINITY);
     serve_body(&options, args.ros_robot.raw_images, offered, &mut simulator, |time| {

@@ -20,6 +20,7 @@ pub use diagnostics::{Condition, Diagnostics, Level};
 pub use event_loop::NodeThread;
 pub use goals::{GoalEnd, GoalId, Goals, MAX_GOALS_PER_SECOND, ResultAnswer};
 pub use names::Names;
+pub(crate) use network::DISCOVERY;
 pub use network::Networks;
 pub use readers::Readers;
 pub use reply::{MAX_REPLY_BYTES, arrives};
