@@ -16,12 +16,15 @@ pub enum Ros2Error {
     },
     /// An unknown ROS argument.
     #[error(
-        "'{argument}' after --ros-args is unknown; expected `-r FROM:=TO`, `-r __ns:=/NS`, `-r __node:=NAME` or `-p NAME:=VALUE`"
+        "'{argument}' after --ros-args is unknown; expected `-r FROM:=TO`, `-r __ns:=/NS`, `-r __node:=NAME`, `-p NAME:=VALUE`, `--params-file FILE` or `--log-level LEVEL`"
     )]
     Argument {
         /// The argument.
         argument: String,
     },
+    /// A parameter file that cannot be read.
+    #[error("the parameter file after --params-file cannot be read: {0}")]
+    ParameterFile(String),
     /// A parameter whose value has the wrong type.
     #[error("parameter {name} is '{value}', expected {expected}")]
     Parameter {

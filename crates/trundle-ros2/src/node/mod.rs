@@ -8,6 +8,7 @@ mod goals;
 mod middleware_death;
 mod names;
 mod network;
+mod params_file;
 pub mod qos;
 mod readers;
 mod reply;
