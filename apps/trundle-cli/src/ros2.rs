@@ -8,48 +8,38 @@ use crate::outcome::Outcome;
 use crate::{console, logging, run_output};
 use std::time::Duration;
 use trundle::app::real_time::run_in_real_time;
-use trundle::app::report::mission_text;
-use trundle::app::{AppError, RunLog, stop};
+use trundle::app::{AppError, RunLog, first_mission, keep_other_checkpoint, stop};
 use trundle::ros2::Ros2Robot;
-use trundle::runtime::Mission;
 
 /// `trundle ros2`.
 pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     let mut robot = args.options.robot.robot()?;
     let options = args.ros.options()?;
-    let request = args.request();
-    let mission = if request.is_empty() { Mission::default() } else { request.mission()? };
-    let mut settings = args.topics();
-    settings.use_sim_time = options.use_sim_time;
-    settings.stamped_commands = options.stamped_commands;
-    settings.base_frame = options.frames.base.clone();
+    let (mission, resumed) = first_mission(&args.request(), args.resume.as_deref(), args.stays())?;
     let wait = Duration::from_secs_f64(args.wait);
     let is_cancelled = || stop::is_requested(|| "the wait for topics".to_owned());
-    let connected = Ros2Robot::connect(&options, settings, &mut robot, wait, is_cancelled)?;
+    let connected =
+        Ros2Robot::connect(&options, args.topics.settings(&options), &mut robot, wait, is_cancelled)?;
     let (node, link, body) = connected.into_parts();
     let mut setup = args.options.setup("ros2", &options.node.names.node, mission, robot)?;
     setup.is_operated = args.stays();
+    let setup = resumed.iter().fold(setup, |setup, bytes| setup.resumed_from(bytes));
     let setup = args.live.with_zones(setup)?;
     let folder = logging::output_folder(&args.out)?;
     if !args.options.common.quiet {
-        let mission = if args.stays() {
-            "waits for goals; Ctrl-C ends it".to_owned()
-        } else {
-            mission_text(&setup.mission)
-        };
-        console::print(&format!(
-            "ROS 2 domain {}, node {}: {mission}.",
-            options.node.domain, options.node.names.node
-        ));
+        console::print(&options.node.announcement(&setup.mission_line()));
     }
     let (line, progress) = console::progress(args.options.common.quiet);
     let log = if args.stays() { RunLog::brief() } else { RunLog::default() };
     let (page, front_end) = args.live.front_ends(&setup, progress, Some(link), true)?;
-    let start = |events, _place| body.start(events);
-    let run = run_in_real_time(&setup, start, &folder, args.options.checkpoint.as_deref(), log, front_end);
+    let checkpoint = args.options.checkpoint.as_deref();
+    let start = |events, _place| {
+        let body = body.start(events)?;
+        keep_other_checkpoint(checkpoint, args.resume.as_deref()).map(|()| body)
+    };
+    let run = run_in_real_time(&setup, start, &folder, checkpoint, log, front_end);
     line.finish_and_clear();
-    drop(page);
-    drop(node);
+    drop((page, node));
     let (run, timing) = run?;
     run_output::write(&setup, run, Some(&timing), folder, args.options.common.quiet)
 }

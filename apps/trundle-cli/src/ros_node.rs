@@ -5,6 +5,7 @@ use clap::Args;
 use std::time::Instant;
 use trundle::app::AppError;
 use trundle::app::operator::OperatorLink;
+use trundle::app::real_time::EventObserver;
 use trundle::ros2::node::Networks;
 use trundle::ros2::{RobotNode, Ros2Options};
 use trundle::runtime::RobotConfig;
@@ -33,11 +34,31 @@ impl RosArgs {
     }
 }
 
-/// A node for `trundle run`, and the run's end of the link to the node.
-pub fn start(
-    args: &RosArgs,
-    robot: &RobotConfig,
-    origin: Instant,
-) -> Result<(RobotNode, OperatorLink), AppError> {
-    Ok(RobotNode::offer(&args.options()?, robot, origin)?)
+/// trundle's own robot, real or simulated, on ROS 2.
+#[derive(Debug, Args)]
+pub struct RosRobotArgs {
+    /// Publish map, pose and state on ROS 2, and accept goals from there, also after the mission; without a mission the robot waits for goals.
+    #[arg(long)]
+    pub ros2: bool,
+    /// With --ros2: raw images instead of JPEG and PNG.
+    #[arg(long, requires = "ros2", hide_short_help = true)]
+    pub raw_images: bool,
+    /// Network and names.
+    #[command(flatten)]
+    pub ros: RosArgs,
+}
+
+/// The node of a run, the run's end of the link to the node, and the receiver of the body's events.
+type RunNode = (Option<RobotNode>, Option<OperatorLink>, Option<EventObserver>);
+
+impl RosRobotArgs {
+    /// The node of a run of `robot`, whose stamps count from `origin`, if requested.
+    pub fn start(&self, robot: &RobotConfig, origin: Instant) -> Result<RunNode, AppError> {
+        if !self.ros2 {
+            return Ok((None, None, None));
+        }
+        let (node, link) = RobotNode::offer(&self.ros.options()?, self.raw_images, robot, origin)?;
+        let observer = node.observer();
+        Ok((Some(node), Some(link), observer))
+    }
 }

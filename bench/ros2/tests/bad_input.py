@@ -16,7 +16,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from faults import named
 from geometry_msgs.msg import TwistStamped
 from harness import Checks, Process, start_trundle
-from mujoco_robot import messages
+from mujoco_robot import kobuki, messages
 from nav2_msgs.action import NavigateToPose
 from sensor_msgs.msg import CompressedImage
 from standing_robot import HEIGHT_PX, WIDTH_PX, StandingRobot
@@ -119,14 +119,22 @@ def play_faults(checks, case, wanted):
 
 
 def play_transforms(checks, case):
-    """A transform of NaN, one that jumps, one of the next year."""
-    case.robot.kept["/diagnostics"] = []
-    for x, stamp_s in ((math.nan, 0), (50.0, 0), (0.056, YEAR_S)):
+    """The gyro's transform: one of the next year, one of NaN, one that jumps."""
+    def send(x, stamp_s, *words):
+        """Diagnostics of the gyro's transform that hold one of the words; all of them without words."""
+        case.robot.kept["/diagnostics"] = []
         case.robot.publish("tf_static", transform(x, stamp_s))
         case.robot.publish("tf", transform(x, stamp_s))
-        case.robot.play(1.0)
-    found = case.reports("/tf", ("NaN", "finite"))
+        case.robot.play(FAULT_S)
+        found = case.reports("/tf", (f"transform base_link -> {messages.GYRO_FRAME}",))
+        return [text for text in found if not words or any(word in text for word in words)]
+
+    found = send(kobuki.GYRO_XYZ_M[0], YEAR_S)
+    checks.check("a static transform of the next year is harmless", not found, "; ".join(found[:1]))
+    found = send(math.nan, 0, "NaN", "finite")
     checks.check("a transform of NaN is named", bool(found), "; ".join(found[:1]))
+    found = send(50.0, 0, "off its first value")
+    checks.check("a static transform that jumps is named", bool(found), "; ".join(found[:1]))
 
 
 def garbage_ids(checks, case):

@@ -17,7 +17,7 @@ from mujoco_robot import worlds
 from nav2_msgs.srv import ManageLifecycleNodes
 from nav2_user import FAR, NEAR, User, outcome, status
 from nav_msgs.msg import Path
-from node_checks import lifecycle_states, parameters, transforms
+from node_checks import TransformWatch, lifecycle_states, parameters, transforms
 
 # Codes of an unreachable goal: GOAL_OUTSIDE_MAP, GOAL_OCCUPIED, NO_VALID_PATH of ComputePathToPose.
 UNREACHABLE_CODES = {204, 206, 208}
@@ -106,9 +106,17 @@ def not_finite(checks, user, options):
 
 def compute_and_follow(checks, user, options):
     """A path from the robot to a pose, and driving along it."""
+    user.listen(Path, "plan", keep=True)
+    user.wait_simulated(0.5)
     sent = user.send("compute_path_to_pose", goal=user.map_pose(FAR), use_start=False)
     result = sent.wait(30)
     path = result.result.path if result else Path()
+    wholes = user.kept.setdefault("plan", [])
+    user.until(lambda: wholes, 5)
+    counts = [len(whole.poses) for whole in wholes]
+    checks.check("the topic plan has the whole path", path.poses and max(counts, default=0) > len(path.poses) and
+                 math.dist(planar(wholes[-1].poses[-1].pose)[:2], planar(path.poses[-1].pose)[:2]) < 0.01,
+                 f"{counts} poses, {len(path.poses)} in the result")
     if not checks.check("compute_path_to_pose gives a path", status(result) == "SUCCEEDED" and len(path.poses) > 2, outcome(result)):
         return
     ends = [math.dist(planar(path.poses[i].pose)[:2], relative(user.start, place)[:2]) for i, place in ((0, user.truth()), (-1, FAR))]
@@ -245,6 +253,7 @@ def main():
     processes = goals.start(options, options.out, "flat", options.seed)
     try:
         if checks.check("trundle is active", user.wait_until_active()):
+            options.watch = TransformWatch(user)
             for part in [p for p in PARTS if not options.only or p.__name__ in options.only]:
                 print(f"-- {part.__name__}", flush=True)
                 try:

@@ -1,19 +1,24 @@
 //! Conversion of RGB-D images with their poses, and of a robot's other sensors: ROS bag, TUM folder or recording into another of these forms.
 
+mod bag;
+mod images;
+
+pub use images::Converted;
+
 use crate::sequence::SequenceRequest;
-use crate::sequence_input::{PendingFrame, SequenceInput, SequenceOptions};
+use crate::sequence_input::{SequenceInput, SequenceOptions};
 use crate::sequence_run::{SequenceEvents, sequence_setup};
 use crate::{AppError, StepProgress, stop};
-use trundle_core::{FrameId, Pose3, RgbdImage, Stamp};
-use trundle_io::ros_message::RosMessage;
-use trundle_io::{EncodedEvent, EncodedRgbd, OutputFolder, Recorder, TumFrame, TumWriter, ros_message};
+use images::{each_image, finished};
+use trundle_io::{EncodedEvent, OutputFolder, TumFrame, TumWriter};
 
 /// The form that a sequence is converted into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SequenceForm {
     /// A TUM RGB-D folder.
     TumFolder,
-    /// `bag.mcap`: a ROS 2 bag with colour as JPEG, depth in whole millimetres, camera_info, transforms, odometry and ground truth.
+    /// `bag.mcap`: a ROS 2 bag with colour as JPEG, depth in whole millimetres, camera_info, transforms, odometry, gyro, scans and ground
+    /// truth.
     RosBag,
     /// `recording.mcap`: a recording of trundle with all sensors and ground truth, which `trundle replay` runs.
     Recording,
@@ -32,29 +37,6 @@ impl std::str::FromStr for SequenceForm {
     }
 }
 
-/// Counts of a conversion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Converted {
-    /// Number of images.
-    pub images: usize,
-    /// Number of images that are damaged and left out.
-    pub skipped: usize,
-    /// Number of scans of a laser.
-    pub scans: usize,
-}
-
-impl std::fmt::Display for Converted {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} images, {} damaged and left out", self.images, self.skipped)?;
-        if self.scans > 0 {
-            write!(f, ", {} scans", self.scans)?;
-        }
-        Ok(())
-    }
-}
-
-/// Name of the file of a ROS 2 bag in its folder.
-const BAG_FILE: &str = "bag.mcap";
 /// Name of a recording in its folder.
 const RECORDING_FILE: &str = "recording.mcap";
 /// Rate of the images if the input gives no rate \[Hz\]; the rate of the simulated camera. Source: ours.
@@ -66,13 +48,32 @@ const DEFAULT_RATE_HZ: f64 = 15.0;
 /// # Errors
 /// As [`SequenceInput::open`].
 pub fn open_for(options: &SequenceOptions<'_>, form: SequenceForm) -> Result<SequenceInput, AppError> {
+    let with_laser = options.clone().for_robot();
     match form {
-        SequenceForm::Recording => SequenceRequest::of_options(&options.clone().for_robot(), None).open(),
-        SequenceForm::TumFolder | SequenceForm::RosBag => SequenceInput::open(options),
+        SequenceForm::Recording => SequenceRequest::of_options(&with_laser, None).open(),
+        SequenceForm::RosBag => SequenceInput::open(&with_laser),
+        SequenceForm::TumFolder => {
+            options.refuse_unused_scans()?;
+            SequenceInput::open(&with_laser)
+        }
     }
 }
 
-/// Writes the images of `input`, its odometry and its ground truth into `folder`. A damaged image is left out with a warning.
+/// Sensors of `input` that a TUM folder has no file for, in one sentence; `None` without them.
+#[must_use]
+pub fn lost_in_tum(input: &SequenceInput) -> Option<String> {
+    let (gyro, scans) = (input.gyro().len(), input.scan_stamps().len());
+    (gyro + scans > 0).then(|| {
+        format!(
+            "{}: {gyro} readings of a gyro and {scans} scans of a laser are left out, since a TUM folder has no file for them; \
+             `--to recording` and `--to bag` keep them",
+            input.path.display()
+        )
+    })
+}
+
+/// Writes the images of `input`, its odometry and its ground truth into `folder`, and its gyro and scans if the form has them. A damaged
+/// image is left out with a warning.
 ///
 /// # Errors
 /// When the input breaks, no image can be used, or the folder cannot be written.
@@ -84,7 +85,7 @@ pub fn convert_sequence(
 ) -> Result<Converted, AppError> {
     match form {
         SequenceForm::TumFolder => to_tum(input, folder, progress),
-        SequenceForm::RosBag => to_bag(input, folder, progress),
+        SequenceForm::RosBag => bag::write(input, folder, progress),
         SequenceForm::Recording => to_recording(input, folder, progress),
     }
 }
@@ -94,6 +95,12 @@ fn to_tum(
     folder: &OutputFolder,
     progress: &dyn StepProgress,
 ) -> Result<Converted, AppError> {
+    if input.is_empty() {
+        let problem =
+            "no images, expected some for --to tum; `--to recording` and `--to bag` take the laser alone";
+        return Err(AppError::Input(format!("{}: {problem}", input.path.display())));
+    }
+    lost_in_tum(input).into_iter().for_each(|lost| tracing::warn!("{lost}"));
     let mut writer = TumWriter::new(folder, input.camera.model.camera, DEFAULT_RATE_HZ);
     let converted = each_image(input, progress, |_, image| {
         let frame = TumFrame::encode(&image).map_err(AppError::input)?;
@@ -102,46 +109,7 @@ fn to_tum(
     input.odometry_of_base().into_iter().flatten().for_each(|(stamp, pose)| writer.odometry(*stamp, *pose));
     input.ground_truth().into_iter().flatten().for_each(|(stamp, pose)| writer.ground_truth(*stamp, *pose));
     writer.finish()?;
-    Ok(converted)
-}
-
-fn to_bag(
-    input: &SequenceInput,
-    folder: &OutputFolder,
-    progress: &dyn StepProgress,
-) -> Result<Converted, AppError> {
-    let mut bag = folder.bag(BAG_FILE)?;
-    bag.set_camera(input.camera.model.camera);
-    if input.camera.model.camera.readout() > 0.0 {
-        tracing::warn!(
-            "camera_info holds no readout time: give the camera with --camera when the bag is read"
-        );
-    }
-    let (base, camera) = (FrameId::Base.to_string(), FrameId::Camera.to_string());
-    let mut poses = poses(input, &base, &camera);
-    poses.reverse();
-    let mut mount = input.level_from_first_camera();
-    let mut write = |bag: &mut Recorder<_>, until: Stamp| -> Result<(), AppError> {
-        if let Some(pose) = mount.take() {
-            bag.record_message(
-                "/tf_static",
-                until,
-                &ros_message::transforms(&[(until, &base, &camera, pose)]),
-            )?;
-        }
-        while let Some((stamp, topic, message)) = poses.pop_if(|(stamp, ..)| *stamp <= until) {
-            bag.record_message(topic, stamp, &message)?;
-        }
-        Ok(())
-    };
-    let converted = each_image(input, progress, |frame, image| {
-        write(&mut bag, image.stamp())?;
-        let encoded: EncodedRgbd = frame.encoded(&image).map_err(AppError::input)?;
-        Ok(bag.record_images(&encoded)?)
-    })?;
-    write(&mut bag, Stamp::from_nanos(i64::MAX))?;
-    bag.finish()?;
-    Ok(converted)
+    finished(input, converted)
 }
 
 fn to_recording(
@@ -178,55 +146,4 @@ fn to_recording(
     progress.end();
     recording.finish()?;
     finished(input, Converted { images, skipped: input.len() - images, scans })
-}
-
-/// Odometry and ground truth as messages with their topics, in the order of their stamps.
-fn poses(input: &SequenceInput, base: &str, camera: &str) -> Vec<(Stamp, &'static str, RosMessage)> {
-    let (odom, world) = (FrameId::Odom.to_string(), FrameId::World.to_string());
-    let odometry = input.odometry_of_base().into_iter().flatten().map(|(stamp, pose)| {
-        let pose = Pose3::from_pose2(*pose);
-        (*stamp, "/odom", ros_message::odometry_pose(*stamp, &odom, base, pose))
-    });
-    let truth = input.ground_truth().into_iter().flatten().map(|(stamp, pose)| {
-        (*stamp, "/ground_truth", ros_message::odometry_pose(*stamp, &world, camera, *pose))
-    });
-    let mut all: Vec<_> = odometry.chain(truth).collect();
-    all.sort_by_key(|(stamp, ..)| *stamp);
-    all
-}
-
-/// Hands on each image that is whole.
-fn each_image(
-    input: &SequenceInput,
-    progress: &dyn StepProgress,
-    mut write: impl FnMut(PendingFrame<'_>, RgbdImage) -> Result<(), AppError>,
-) -> Result<Converted, AppError> {
-    let mut converted = Converted { images: 0, skipped: 0, scans: 0 };
-    progress.begin(Some(input.len()));
-    for frame in input.frames()? {
-        if stop::is_requested(|| format!("{} of {} images", converted.images, input.len())) {
-            return Err(AppError::Stopped);
-        }
-        let frame = frame?;
-        match frame.decode() {
-            Ok(image) => {
-                write(frame, image)?;
-                converted.images += 1;
-            }
-            Err(problem) => {
-                tracing::warn!("{problem}; the image is left out");
-                converted.skipped += 1;
-            }
-        }
-        progress.advance();
-    }
-    progress.end();
-    finished(input, converted)
-}
-
-fn finished(input: &SequenceInput, converted: Converted) -> Result<Converted, AppError> {
-    if converted.images == 0 && converted.scans == 0 {
-        return Err(AppError::Input(format!("{}: no image can be used", input.path.display())));
-    }
-    Ok(converted)
 }

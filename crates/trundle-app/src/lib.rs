@@ -88,7 +88,7 @@ mod written_files;
 pub use best_view::BestView;
 pub use body_log::BodyLog;
 pub use bounded_file::{BoundedFile, BoundedFileError};
-pub use checkpoint_file::read_checkpoint;
+pub use checkpoint_file::{first_mission, keep_other_checkpoint, read_checkpoint};
 pub use checkpoint_writer::CheckpointWriter;
 pub use encoded_body::{EncodedBody, RunInput};
 pub use error::AppError;

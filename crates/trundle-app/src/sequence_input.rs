@@ -317,11 +317,24 @@ impl SequenceInput {
         }
     }
 
-    /// A scan of a bag's laser, base frame.
+    /// Stamps of the scans of the laser of a bag or a recording.
+    #[must_use]
+    pub fn scan_stamps(&self) -> Vec<Stamp> {
+        match &self.source {
+            Source::Folder(_) => Vec::new(),
+            Source::Recording(run) => run.scans().iter().map(Scan::stamp).collect(),
+            Source::Bag(bag) => bag.sequence.scan_times().map(|(first, _)| first).collect(),
+        }
+    }
+
+    /// A scan of the laser of a bag or a recording, base frame.
     #[must_use]
     pub fn scan(&self, index: usize) -> Option<Scan> {
-        let Source::Bag(bag) = &self.source else { return None };
-        bag.sequence.scan(index)
+        match &self.source {
+            Source::Folder(_) => None,
+            Source::Recording(run) => run.scans().get(index).cloned(),
+            Source::Bag(bag) => bag.sequence.scan(index),
+        }
     }
 
     /// Whether the input is a recording of trundle.

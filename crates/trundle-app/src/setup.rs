@@ -169,7 +169,17 @@ impl RunSetup {
     #[must_use]
     pub fn announcement(&self, body: &str, camera_rate_hz: f64) -> String {
         let recording = self.recording.announcement(&self.robot.camera, camera_rate_hz, self.time_limit);
-        format!("{body}: {}.\n{recording}", mission_text(&self.mission))
+        format!("{body}: {}.\n{recording}", self.mission_line())
+    }
+
+    /// The mission, for a person before the run.
+    #[must_use]
+    pub fn mission_line(&self) -> String {
+        if self.mission.tasks().is_empty() {
+            return "waits for goals; Ctrl-C ends it".to_owned();
+        }
+        let then = if self.is_operated { ", then waits for goals" } else { "" };
+        format!("{}{then}", mission_text(&self.mission))
     }
 
     /// The same run with the zones and places of a GeoJSON file; changes are stored in this file. If the file is missing, those of the
@@ -267,6 +277,15 @@ mod tests {
             Mission::new(vec![Task::Explore, Task::Return]).unwrap(),
             RobotConfig::default(),
         )
+    }
+
+    #[test]
+    fn the_line_before_a_run_says_what_follows_the_mission() {
+        let operated = setup().operated();
+        assert_eq!(setup().mission_line(), "explore, return to the start");
+        assert_eq!(operated.mission_line(), "explore, return to the start, then waits for goals");
+        let idle = RunSetup { mission: Mission::default(), ..operated };
+        assert_eq!(idle.mission_line(), "waits for goals; Ctrl-C ends it");
     }
 
     #[test]

@@ -16,12 +16,15 @@ pub enum Ros2Error {
     },
     /// An unknown ROS argument.
     #[error(
-        "'{argument}' after --ros-args is unknown; expected `-r FROM:=TO`, `-r __ns:=/NS`, `-r __node:=NAME` or `-p NAME:=VALUE`"
+        "'{argument}' after --ros-args is unknown; expected `-r FROM:=TO`, `-r __ns:=/NS`, `-r __node:=NAME`, `-p NAME:=VALUE`, `--params-file FILE` or `--log-level LEVEL`"
     )]
     Argument {
         /// The argument.
         argument: String,
     },
+    /// A parameter file that cannot be read.
+    #[error("the parameter file after --params-file cannot be read: {0}")]
+    ParameterFile(String),
     /// A parameter whose value has the wrong type.
     #[error("parameter {name} is '{value}', expected {expected}")]
     Parameter {
@@ -45,7 +48,8 @@ pub enum Ros2Error {
     Thread(#[from] std::io::Error),
     /// A topic that is needed to begin stayed silent.
     #[error(
-        "no usable message was received on {topics} within {seconds} s{reason}; `ros2 topic list` shows what is there, --ros-interface and ROS_DOMAIN_ID which network and domain are used"
+        "no usable message was received on {topics} within {seconds} s{reason}; `ros2 topic list` shows what is there, --ros-interface and ROS_DOMAIN_ID which network and domain are used; with --ros-interface loopback {}",
+        crate::node::DISCOVERY
     )]
     Silent {
         /// The topics.

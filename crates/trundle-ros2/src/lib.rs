@@ -22,6 +22,7 @@ mod options;
 pub mod outputs;
 mod robot_node;
 pub mod server;
+mod twist_topic;
 pub mod wire;
 
 pub use error::Ros2Error;

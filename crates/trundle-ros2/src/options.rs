@@ -39,7 +39,9 @@ impl Ros2Options {
             use_sim_time: false,
             stamped_commands: true,
         };
-        for (name, value) in &read.parameters {
+        let is_known = |name: &str| KNOWN.split(", ").any(|known| known == name);
+        let shared = read.shared_parameters.iter().filter(|(name, _)| is_known(name));
+        for (name, value) in shared.chain(&read.parameters) {
             options.set(name, value)?;
         }
         options.node.names = read.names;
@@ -100,5 +102,15 @@ mod tests {
         assert_eq!(options.node.names.namespace, "/robot1");
         assert!(read("-p use_sim_time:=maybe").unwrap_err().to_string().contains("expected true or false"));
         assert!(read("-p speed:=1").unwrap_err().to_string().starts_with("parameter speed is '1'"));
+    }
+
+    #[test]
+    fn parameters_that_a_file_gives_to_all_nodes_may_be_unknown() {
+        let file = std::env::temp_dir().join(format!("trundle-options-{}.yaml", std::process::id()));
+        std::fs::write(&file, "/**:\n  ros__parameters:\n    use_sim_time: true\n    speed: 1\n").unwrap();
+        let arguments = ["--params-file".to_owned(), file.display().to_string()];
+        let read = Ros2Options::read("trundle", Some(7), Networks::Loopback, &arguments);
+        std::fs::remove_file(&file).unwrap();
+        assert!(read.unwrap().use_sim_time);
     }
 }

@@ -100,12 +100,13 @@ impl BodyStart {
 }
 
 impl RobotNode {
-    /// Offers a run on trundle's own body, whose stamps count from `origin`.
+    /// Offers a run on trundle's own body, whose stamps count from `origin`. Images are published raw or as JPEG and PNG files.
     ///
     /// # Errors
     /// When the network cannot be joined, or a topic cannot be created.
     pub fn offer(
         options: &Ros2Options,
+        raw_images: bool,
         robot: &RobotConfig,
         origin: Instant,
     ) -> Result<(Self, OperatorLink), Ros2Error> {
@@ -113,7 +114,9 @@ impl RobotNode {
         let (operator, link) = operator_link();
         let outputs = OutputSettings::of(options, robot, true);
         let clock = RosClock::system_from(origin);
-        let sensors = observer(&mut node, options, robot, clock.clone())?;
+        let (frames, stamped_commands) = (options.frames.clone(), options.stamped_commands);
+        let settings = ServerSettings { frames, stamped_commands, raw_images };
+        let sensors = observer(&mut node, &settings, robot, clock.clone())?;
         let parts = Parts::new(&mut node, options, robot, outputs, operator, clock)?;
         let thread = Arc::new(node.start()?);
         let offered = parts.start(thread, robot, None)?;
@@ -130,13 +133,11 @@ impl RobotNode {
 /// Publishes the events of the sensors of `robot`.
 fn observer(
     node: &mut RosNode,
-    options: &Ros2Options,
+    settings: &ServerSettings,
     robot: &RobotConfig,
     clock: RosClock,
 ) -> Result<EventObserver, Ros2Error> {
-    let (frames, stamped_commands) = (options.frames.clone(), options.stamped_commands);
-    let settings = ServerSettings::new(frames, stamped_commands);
-    let topics = Mutex::new(SensorTopics::new(node, &settings, robot.camera, robot.drive)?);
+    let topics = Mutex::new(SensorTopics::new(node, settings, robot.camera, robot.drive)?);
     Ok(Arc::new(move |event: &SensorEvent| {
         let at = clock.to_ros(event.stamp());
         topics.lock().unwrap_or_else(PoisonError::into_inner).publish(event, at);
@@ -166,7 +167,7 @@ impl Parts {
         let topics = RobotTopics::new(node, &settings)?;
         let active = ActiveGoal::new(operator.clone(), clock.clone(), diagnostics.clone());
         let published_map = PublishedMap::default();
-        navigation::offer(node, &active, &options.frames, &published_map, robot)?;
+        navigation::offer(node, &active, options, &published_map, robot)?;
         Parameters::of(robot, options.use_sim_time).offer(node, &active)?;
         Ok(Self { topics, settings, operator, clock, diagnostics, published_map })
     }

@@ -12,6 +12,7 @@ use trundle::runtime::{Mission, RobotConfig};
 
 /// `trundle run`
 #[derive(Debug, Args)]
+#[cfg_attr(feature = "ros2", command(mut_arg("ros2", |ros2| ros2.group("MissionArgs"))))]
 #[command(after_help = "Example: trundle run --base kobuki --camera stream:/tmp/camera --goal 3,1,90\n\n\
     Ctrl-C stops the robot and ends the run. `trundle devices` lists what is plugged in.\n\
     Exit code: 0 mission done and nothing touched, 1 otherwise, 2 bad input or a device that does not answer.")]
@@ -43,14 +44,21 @@ pub struct RunArgs {
     /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/run")]
     pub out: OutputDirArg,
-    /// Publish map, pose and state on ROS 2, and accept goals from there, also after the mission.
-    #[cfg(feature = "ros2")]
-    #[arg(long)]
-    pub ros2: bool,
-    /// Network and names.
+    /// The robot on ROS 2.
     #[cfg(feature = "ros2")]
     #[command(flatten)]
-    pub ros: crate::ros_node::RosArgs,
+    pub ros_robot: crate::ros_node::RosRobotArgs,
+}
+
+impl RunArgs {
+    /// Whether a person or a program may give commands to the run.
+    pub fn is_operated(&self) -> bool {
+        #[cfg(feature = "ros2")]
+        if self.ros_robot.ros2 {
+            return true;
+        }
+        self.live.is_operated()
+    }
 }
 
 /// Options of every run on a live robot.

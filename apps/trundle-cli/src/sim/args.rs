@@ -14,8 +14,14 @@ use trundle::sim::{LaserConfig, SimConfig};
 const LIVE_HELP: &str = "Show the drive in a browser, in real time: prints the link. Without another driver the page drives, by keys, \
                          stick or gamepad, until Ctrl-C or --duration. ADDR is IP:PORT [default: 127.0.0.1:8642, or a free port where it is in use]";
 
+#[cfg(feature = "ros2")]
+const ROS2_HELP: &str = "Be a ROS 2 robot, in real time, until Ctrl-C or --duration";
+#[cfg(feature = "ros2")]
+const ROS2_CONFLICTS: [&str; 5] = ["driver", "record", "map", "kobuki", "live"];
+
 /// `trundle sim`
 #[derive(Debug, Args)]
+#[cfg_attr(feature = "ros2", command(mut_arg("ros2", |ros2| ros2.help(ROS2_HELP).conflicts_with_all(ROS2_CONFLICTS))))]
 #[command(group = ArgGroup::new("map_use").multiple(true), mut_arg("live", |live| live.help(LIVE_HELP).group("map_use")))]
 #[command(after_help = "Example: trundle sim office --follow waypoints.txt --record out/office\n\n\
     Exit code: 0 done, 1 a way-point was not reached, 2 bad input.")]
@@ -50,7 +56,7 @@ pub struct SimArgs {
     /// The simulator as a ROS 2 robot.
     #[cfg(feature = "ros2")]
     #[command(flatten)]
-    pub ros_robot: RosRobotArgs,
+    pub ros_robot: crate::ros_node::RosRobotArgs,
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
@@ -71,21 +77,6 @@ pub struct DriverArgs {
     /// Stop after this simulated time, s, or at the end of the drive [default: 5 without a drive]
     #[arg(long, value_name = "S", value_parser = NumberArg(NumberText::up_to(1e6, "s")), allow_negative_numbers = true)]
     pub duration: Option<f64>,
-}
-
-/// The simulator as a ROS 2 robot.
-#[cfg(feature = "ros2")]
-#[derive(Debug, Args)]
-pub struct RosRobotArgs {
-    /// Be a ROS 2 robot, in real time, until Ctrl-C or --duration.
-    #[arg(long, conflicts_with_all = ["driver", "record", "map", "kobuki", "live"])]
-    pub ros2: bool,
-    /// With --ros2: raw images instead of JPEG and PNG.
-    #[arg(long, requires = "ros2", hide_short_help = true)]
-    pub raw_images: bool,
-    /// Network and names.
-    #[command(flatten)]
-    pub ros: crate::ros_node::RosArgs,
 }
 
 /// The file of the true map.

@@ -33,7 +33,7 @@ impl SequenceOptions<'_> {
     ///
     /// # Errors
     /// Names the topic.
-    pub(super) fn refuse_unused_scans(&self) -> Result<(), AppError> {
+    pub(crate) fn refuse_unused_scans(&self) -> Result<(), AppError> {
         let Some(topic) = self.topics.scan_topic.as_ref().filter(|_| !self.topics.is_for_robot) else {
             return Ok(());
         };

@@ -2,7 +2,7 @@
 
 use crate::body::run_into;
 use std::path::{Path, PathBuf};
-use trundle_app::convert::{SequenceForm, convert_sequence, open_for};
+use trundle_app::convert::{SequenceForm, convert_sequence, lost_in_tum, open_for};
 use trundle_app::report::RunNumbers;
 use trundle_app::sequence::SequenceRequest;
 use trundle_app::sequence_input::{SequenceInput, SequenceOptions, topic_rows};
@@ -117,6 +117,38 @@ fn a_robot_without_a_camera_is_run_and_its_recording_alike() {
     let (pose, other) = (of_bag.robot.estimate().pose, of_recording.robot.estimate().pose);
     assert_eq!((pose.x, pose.y, pose.theta), (other.x, other.y, other.theta));
     assert_eq!(of_bag.robot.grid().cells(), of_recording.robot.grid().cells());
+}
+
+#[test]
+fn gyro_and_scans_go_through_a_bag_and_not_through_a_folder() {
+    let scratch = tempfile::tempdir().unwrap();
+    let file = bag(&scratch.path().join("bag"), &drive());
+    let input = open_for(&SequenceOptions::new(&file), SequenceForm::RosBag).unwrap();
+    let scans = input.scan_stamps();
+    let out = OutputFolder::create(&scratch.path().join("copy")).unwrap();
+    let counts = convert_sequence(&input, SequenceForm::RosBag, &out, &()).unwrap();
+    assert_eq!((counts.images, counts.scans), (0, scans.len()));
+    let copy = open(&out.commit().unwrap().join("bag.mcap"));
+    assert!(!input.gyro().is_empty() && scans.len() > 50, "{} scans", scans.len());
+    assert_eq!((copy.gyro(), copy.scan_stamps()), (input.gyro(), scans.clone()));
+    for (own, other) in (0..scans.len()).map(|i| (copy.scan(i).unwrap(), input.scan(i).unwrap())) {
+        assert_eq!((own.origin(), own.beams()), (other.origin(), other.beams()));
+        assert!((own.angle(0) - other.angle(0)).abs() < 1e-6, "{} rad", own.angle(0));
+    }
+    let moved = |input: &SequenceInput| {
+        let (odometry, truth) = (input.odometry_of_base().unwrap(), input.ground_truth().unwrap());
+        (odometry.len(), odometry.last().unwrap().1, truth.len(), truth.last().unwrap().1.to_pose2())
+    };
+    let ((count, pose, truths, truth), expected) = (moved(&copy), moved(&input));
+    assert_eq!((count, truths), (expected.0, expected.2));
+    assert!(pose.distance(&expected.1) < 1e-9 && truth.distance(&expected.3) < 1e-9, "{pose:?}, {truth:?}");
+
+    let lost = lost_in_tum(&input).unwrap();
+    let (readings, scans) = (input.gyro().len(), scans.len());
+    assert!(lost.contains(&format!(": {readings} readings of a gyro and {scans} scans")), "{lost}");
+    let out = OutputFolder::create(&scratch.path().join("tum")).unwrap();
+    let refused = convert_sequence(&input, SequenceForm::TumFolder, &out, &()).unwrap_err().to_string();
+    assert!(refused.contains("no images, expected some for --to tum"), "{refused}");
 }
 
 #[test]

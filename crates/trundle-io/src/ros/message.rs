@@ -8,7 +8,7 @@ mod visualization;
 
 pub use geometry::{StampedTransform, pose, transforms, twist};
 pub use navigation::{map, odometry, odometry_pose, path};
-pub use sensors::{camera_info, color_image, depth_image, gyro, scan};
+pub use sensors::{camera_info, color_image, depth_image, gyro, scan, sweep};
 pub use status::{diagnostics, text};
 pub use visualization::{PointPair, features, keyframe_graph, points};
 

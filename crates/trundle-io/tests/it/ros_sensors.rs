@@ -4,7 +4,7 @@ use nalgebra::UnitQuaternion;
 use std::io::Cursor;
 use std::path::Path;
 use tempfile::NamedTempFile;
-use trundle_core::{Beam, GyroRate, Pose3, Scan, Stamp, Vector2, Vector3};
+use trundle_core::{Beam, BeamTimes, GyroRate, Pose3, Scan, Stamp, Vector2, Vector3};
 use trundle_io::ros_message::RosMessage;
 use trundle_io::*;
 
@@ -105,6 +105,23 @@ fn gyro_and_scans_are_in_the_frame_of_the_base() {
     let scan = sequence.scan(10).unwrap();
     assert_eq!((scan.stamp(), scan.origin()), (stamp(1000), Vector2::new(0.2, 0.0)));
     assert!(scan.hits().count() == 5 && sequence.scan(11).is_none());
+}
+
+#[test]
+fn a_sweep_keeps_free_ranges_and_the_times_of_its_beams() {
+    let beams = vec![Beam::Hit { range: 2.0 }, Beam::Unseen, Beam::Free { range: 8.0 }];
+    let written = Scan::new(stamp(500), Vector2::zeros(), -0.5, 0.25, beams).unwrap();
+    for step_s in [0.0, 0.125, -0.125] {
+        let times = BeamTimes { first_s: if step_s < 0.0 { 0.25 } else { 0.0 }, step_s };
+        let written = written.clone();
+        let written = if step_s == 0.0 { written } else { written.with_beam_times(times).unwrap() };
+        let mut lines = lines();
+        lines.retain(|line| line.1 != "/scan");
+        lines.push((500, "/scan", ros_message::sweep("laser", &written)));
+        let read = open(&lines).scan(0).unwrap();
+        assert_eq!((read.stamp(), read.beams()), (written.stamp(), written.beams()));
+        assert_eq!((read.angle(0), read.angle(2), read.beam_times()), (-0.5, 0.0, written.beam_times()));
+    }
 }
 
 #[test]

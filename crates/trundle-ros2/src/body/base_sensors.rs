@@ -54,6 +54,21 @@ pub struct Shared {
 }
 
 impl Shared {
+    /// The state before the first message.
+    pub(super) fn new(clock: RosClock, diagnostics: Diagnostics) -> Self {
+        Self {
+            sink: Mutex::default(),
+            frames: Mutex::default(),
+            odometry: Mutex::default(),
+            has_gyro: AtomicBool::default(),
+            uses_gyro: AtomicBool::default(),
+            odom_frame: Mutex::default(),
+            clock,
+            diagnostics,
+            start: Instant::now(),
+        }
+    }
+
     /// Sends an event into the run, if one is active.
     pub fn send(&self, event: SensorEvent) {
         if let Some(sink) = &*lock(&self.sink) {
@@ -207,4 +222,45 @@ fn subscribe_battery(node: &mut RosNode, topic: &str, shared: &Arc<Shared>) -> R
         }
     };
     node.subscribe(topic, &qos::sensor(1), None, on_battery).map(drop)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::node::{Names, Networks, NodeSettings};
+
+    /// A domain that no other test has. Source: ours, below those of `tests/it`.
+    const DOMAIN: u16 = 98;
+
+    fn node(name: &str) -> RosNode {
+        RosNode::new(&NodeSettings::new(Names::of_node(name), DOMAIN, Networks::Loopback)).unwrap()
+    }
+
+    #[test]
+    fn a_battery_reaches_the_run_and_a_broken_one_is_named() {
+        let (mut driver, mut own) = (node("battery_driver"), node("battery_reader"));
+        let publisher = driver.publisher::<BatteryState>("battery_state", &qos::reliable(1)).unwrap();
+        let shared = Arc::new(Shared::new(RosClock::system(), own.diagnostics()));
+        let charges = Arc::<Mutex<Vec<Option<f64>>>>::default();
+        let kept = Arc::clone(&charges);
+        *lock(&shared.sink) = Some(Box::new(move |event| match event {
+            SensorEvent::Body(BodyEvent { kind: BodyEventKind::Battery(battery), .. }) => {
+                lock(&kept).push(battery.charge);
+            }
+            other => panic!("{other:?}"),
+        }));
+        let mut settings = BodySettings::default();
+        (settings.imu, settings.battery) = (None, Some("battery_state".to_owned()));
+        subscribe(&mut own, &settings, DifferentialDrive::KOBUKI, &shared).unwrap();
+        let (_driving, _reading) = (driver.start().unwrap(), own.start().unwrap());
+        let end = Instant::now() + Duration::from_secs(20);
+        while lock(&charges).is_empty() || !shared.diagnostics.summary().contains("/battery_state: voltage") {
+            assert!(Instant::now() < end, "{:?}, {}", lock(&charges), shared.diagnostics.summary());
+            for (voltage, percentage) in [(14.0, 0.5), (f32::NAN, 0.5)] {
+                publisher.publish(BatteryState { voltage, percentage, ..BatteryState::default() }).unwrap();
+                std::thread::sleep(Duration::from_millis(20));
+            }
+        }
+        assert!(lock(&charges).iter().all(|charge| *charge == Some(0.5)), "{:?}", lock(&charges));
+    }
 }

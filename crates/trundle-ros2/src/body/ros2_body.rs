@@ -10,15 +10,16 @@ use super::{BodySettings, FrameTree};
 use crate::Ros2Error;
 use crate::clock::RosClock;
 use crate::convert::stamp;
+use crate::generated::geometry_msgs::TransformStamped;
 use crate::generated::rosgraph_msgs::Clock;
 use crate::generated::tf2_msgs::TFMessage;
 use crate::node::{NodeThread, RosNode, TopicMonitor, qos};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use trundle_app::AppError;
 use trundle_app::real_time::{EventFeed, LiveBody, TimedEvent};
-use trundle_core::{DifferentialDrive, Odometry, PinholeCamera, Pose3, Stamp};
+use trundle_core::{DifferentialDrive, Invalid, Odometry, PinholeCamera, Pose3, Stamp};
 use trundle_drivers::camera::camera_thread::{CameraThread, CameraThreadConfig, CameraThreadParts};
 use trundle_runtime::real_time::InboxSender;
 
@@ -62,17 +63,7 @@ impl Ros2Body {
     ) -> Result<Self, Ros2Error> {
         let clock = if settings.use_sim_time { RosClock::simulated() } else { RosClock::system() };
         let diagnostics = node.diagnostics();
-        let shared = Arc::new(Shared {
-            sink: Mutex::default(),
-            frames: Mutex::new(FrameTree::default()),
-            odometry: Mutex::default(),
-            has_gyro: AtomicBool::default(),
-            uses_gyro: AtomicBool::default(),
-            odom_frame: Mutex::default(),
-            clock: clock.clone(),
-            diagnostics: diagnostics.clone(),
-            start: Instant::now(),
-        });
+        let shared = Arc::new(Shared::new(clock.clone(), diagnostics.clone()));
         let inbox = Arc::new(ImageInbox::new(diagnostics));
         let time = settings.use_sim_time.then(|| subscribe_clock(node, &shared)).transpose()?;
         node.measure_silence_by(clock.clone());
@@ -285,11 +276,14 @@ fn subscribe_clock(node: &mut RosNode, shared: &Arc<Shared>) -> Result<Arc<Topic
 }
 
 fn subscribe_frames(node: &mut RosNode, shared: &Arc<Shared>) -> Result<(), Ros2Error> {
-    for (topic, qos) in [("/tf_static", qos::latched()), ("/tf", qos::sensor(100))] {
+    type Add = fn(&mut FrameTree, &TransformStamped) -> Result<(), Invalid>;
+    let topics: [(_, _, Add); 2] =
+        [("/tf_static", qos::latched(), FrameTree::add_static), ("/tf", qos::sensor(100), FrameTree::add)];
+    for (topic, qos, add) in topics {
         let (shared, name) = (Arc::clone(shared), node.names().resolve(topic));
         let on_frames = move |message: TFMessage| {
             for transform in &message.transforms {
-                let added = lock(&shared.frames).add(transform);
+                let added = add(&mut lock(&shared.frames), transform);
                 shared.accept(&name, added);
             }
         };

@@ -1,5 +1,6 @@
 //! Topics and frames of a ROS 2 robot.
 
+use crate::Ros2Options;
 use crate::convert::camera_info::Rectification;
 
 /// Topics, frames and forms of a ROS 2 robot's sensors and base.
@@ -12,7 +13,7 @@ pub struct BodySettings {
     pub imu: Option<String>,
     /// Laser, `sensor_msgs/LaserScan`.
     pub scan: Option<String>,
-    /// Battery, `sensor_msgs/BatteryState`.
+    /// Battery, `sensor_msgs/BatteryState`. An empty one holds the robot, so that a driver that reports 0 for an unknown charge does, too.
     pub battery: Option<String>,
     /// Colour images; the form is by the name: `.../compressed` or raw.
     pub color: String,
@@ -52,6 +53,17 @@ impl Default for BodySettings {
 }
 
 impl BodySettings {
+    /// The default topics, with the base's frame, the clock and the form of commands of these options.
+    #[must_use]
+    pub fn of(options: &Ros2Options) -> Self {
+        Self {
+            stamped_commands: options.stamped_commands,
+            base_frame: options.frames.base.clone(),
+            use_sim_time: options.use_sim_time,
+            ..Self::default()
+        }
+    }
+
     /// Whether colour comes as JPEG files.
     #[must_use]
     pub fn is_color_compressed(&self) -> bool {

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use trundle_app::operator::{Operator, OperatorError, RunView};
 use trundle_core::Twist2;
-use trundle_runtime::{Mission, OperatorCommand, Reason, Task, TaskEnd};
+use trundle_runtime::{Mission, OperatorCommand, Task, TaskEnd};
 
 /// Period of feedback. Source: ours; Nav2's is 10 ms to 1 s by action.
 const FEEDBACK_PERIOD: Duration = Duration::from_millis(100);
@@ -45,11 +45,33 @@ struct Active {
     request: u64,
     since: Instant,
     start: trundle_core::Pose2,
+    /// The goal's tasks that have ended.
+    ended: Vec<(usize, TaskEnd)>,
     /// Time after which the goal fails.
     time_limit: Option<Duration>,
     /// Time of the final stop request, and the end and result of the goal after the stop.
     stopping: Option<(Instant, GoalEnd, NavigationOutcome)>,
     feedback_due: Instant,
+}
+
+impl Active {
+    fn new(goal: Box<dyn RunningGoal>, request: u64, view: &RunView, time_limit: Option<Duration>) -> Self {
+        let (now, start) = (Instant::now(), view.estimate.pose);
+        let ended = Vec::new();
+        Self { goal, request, since: now, start, ended, time_limit, stopping: None, feedback_due: now }
+    }
+
+    /// Notes the tasks that have ended.
+    fn note_tasks(&mut self, view: &RunView) {
+        let records = &view.mission.ended;
+        if records.len() != self.ended.len() {
+            self.ended = records.iter().map(|record| (record.index, record.end.clone())).collect();
+        }
+    }
+
+    fn end(self, end: GoalEnd, outcome: NavigationOutcome) {
+        self.goal.end(end, &NavigationOutcome { ended: self.ended, ..outcome });
+    }
 }
 
 /// The goal in progress, at most one. Clones share it.
@@ -96,12 +118,9 @@ impl ActiveGoal {
         let mission = Mission::new(tasks).map_err(|error| error.to_string())?;
         let request =
             self.operator.send(OperatorCommand::Begin(mission)).map_err(|error| error.to_string())?;
-        let now = Instant::now();
-        let start = view.estimate.pose;
-        let active =
-            Active { goal, request, since: now, start, time_limit, stopping: None, feedback_due: now };
+        let active = Active::new(goal, request, &view, time_limit);
         if let Some(old) = self.lock().replace(active) {
-            old.goal.end(GoalEnd::Aborted, &NavigationOutcome::replaced());
+            old.end(GoalEnd::Aborted, NavigationOutcome::replaced());
         }
         Ok(())
     }
@@ -114,7 +133,7 @@ impl ActiveGoal {
         let mission = Mission::new(tasks).map_err(|error| error.to_string())?;
         self.send(OperatorCommand::Begin(mission)).map_err(|error| error.to_string())?;
         if let Some(old) = self.lock().take() {
-            old.goal.end(GoalEnd::Aborted, &NavigationOutcome::replaced());
+            old.end(GoalEnd::Aborted, NavigationOutcome::replaced());
         }
         Ok(())
     }
@@ -134,7 +153,7 @@ impl ActiveGoal {
         if let Some((end, outcome)) = self.step(goal, &view, now)
             && let Some(goal) = active.take()
         {
-            goal.goal.end(end, &outcome);
+            goal.end(end, outcome);
         }
     }
 
@@ -157,8 +176,9 @@ impl ActiveGoal {
             let is_over = is_standing(view) || now - *since > STANDSTILL_TIMEOUT;
             return is_over.then(|| (*end, outcome.clone()));
         }
+        active.note_tasks(view);
         if view.mission.is_over {
-            return Some(end_of(view));
+            return Some(end_of(view, &active.ended));
         }
         self.stop_where_asked(active, now);
         if now >= active.feedback_due {
@@ -198,17 +218,13 @@ fn is_standing(view: &RunView) -> bool {
     v.abs() < STANDSTILL_SPEED && omega.abs() < STANDSTILL_SPEED
 }
 
-/// End of a goal whose mission is over.
-fn end_of(view: &RunView) -> (GoalEnd, NavigationOutcome) {
-    let reason = |end: &TaskEnd| match end {
-        TaskEnd::GivenUp { reason } => Some(reason.clone()),
-        _ => None,
-    };
-    let missed: Vec<(usize, Reason)> =
-        view.mission.ended.iter().filter_map(|record| Some((record.index, reason(&record.end)?))).collect();
-    let state = view.state.drive().and_then(|state| state.reason()).cloned();
-    let failure = missed.last().map(|(_, reason)| reason.clone()).or(state);
-    let end = if failure.is_none() { GoalEnd::Succeeded } else { GoalEnd::Aborted };
-    let message = failure.as_ref().map(ToString::to_string).unwrap_or_default();
-    (end, NavigationOutcome { message, reason: failure, missed, is_timeout: false })
+/// End of a goal whose mission is over, its tasks `ended`.
+fn end_of(view: &RunView, ended: &[(usize, TaskEnd)]) -> (GoalEnd, NavigationOutcome) {
+    let mut outcome = NavigationOutcome { ended: ended.to_vec(), ..NavigationOutcome::default() };
+    let state = view.state.drive().and_then(|state| state.reason());
+    let failure = outcome.missed().next_back().map(|(_, reason)| reason).or(state).cloned();
+    outcome.reason = failure;
+    let end = if outcome.reason.is_none() { GoalEnd::Succeeded } else { GoalEnd::Aborted };
+    outcome.message = outcome.reason.as_ref().map(ToString::to_string).unwrap_or_default();
+    (end, outcome)
 }

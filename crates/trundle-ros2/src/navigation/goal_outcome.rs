@@ -1,6 +1,6 @@
 //! Outcome of a goal.
 
-use trundle_runtime::Reason;
+use trundle_runtime::{Reason, TaskEnd};
 
 /// Outcome of a goal, for its result.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -9,8 +9,8 @@ pub struct NavigationOutcome {
     pub message: String,
     /// Reason why the robot failed.
     pub reason: Option<Reason>,
-    /// Tasks of the goal that are undone.
-    pub missed: Vec<(usize, Reason)>,
+    /// Tasks of the goal that ended, by their index, in the order of their ends. A task that was put off may end again.
+    pub ended: Vec<(usize, TaskEnd)>,
     /// Whether the time that was allowed is over.
     pub is_timeout: bool,
 }
@@ -32,6 +32,14 @@ impl NavigationOutcome {
     #[must_use]
     pub fn timed_out() -> Self {
         Self { is_timeout: true, ..Self::failed("the time that was allowed is over") }
+    }
+
+    /// The tasks that the robot gave up.
+    pub fn missed(&self) -> impl DoubleEndedIterator<Item = (usize, &Reason)> {
+        self.ended.iter().filter_map(|(index, end)| match end {
+            TaskEnd::GivenUp { reason } => Some((*index, reason)),
+            _ => None,
+        })
     }
 
     /// The error code: `none` for a success, `timeout`, or that of the reason.

@@ -12,19 +12,20 @@ mod parameters;
 mod path_planner;
 mod pose_inputs;
 mod remaining;
+mod teleop_input;
 
 pub use active_goal::{ActiveGoal, GoalProgress, RunningGoal};
 pub use goal_outcome::NavigationOutcome;
 pub use navigation_action::{GoalContext, NavigationAction, NavigationRefusal};
 pub use parameters::Parameters;
 
-use crate::Ros2Error;
 use crate::generated::nav2_msgs::{
     BackUp, DockRobot, DriveOnHeading, FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose,
     Spin, UndockRobot,
 };
 use crate::node::RosNode;
-use crate::outputs::{FrameNames, PublishedMap};
+use crate::outputs::PublishedMap;
+use crate::{Ros2Error, Ros2Options};
 use trundle_runtime::RobotConfig;
 
 /// Offers all actions, topics and services by which Nav2's users and tools send goals.
@@ -34,10 +35,11 @@ use trundle_runtime::RobotConfig;
 pub fn offer(
     node: &mut RosNode,
     active: &ActiveGoal,
-    frames: &FrameNames,
+    options: &Ros2Options,
     published_map: &PublishedMap,
     robot: &RobotConfig,
 ) -> Result<(), Ros2Error> {
+    let frames = &options.frames;
     navigation_action::offer::<NavigateToPose>(node, "navigate_to_pose", active, frames)?;
     navigation_action::offer::<NavigateThroughPoses>(node, "navigate_through_poses", active, frames)?;
     navigation_action::offer::<FollowWaypoints>(node, "follow_waypoints", active, frames)?;
@@ -49,6 +51,7 @@ pub fn offer(
     navigation_action::offer::<UndockRobot>(node, "undock_robot", active, frames)?;
     path_planner::offer(node, active, frames, robot)?;
     pose_inputs::offer(node, active, frames)?;
+    teleop_input::offer(node, active, options.stamped_commands)?;
     map_services::offer(node, active, published_map, frames, robot)?;
     lifecycle::offer(node, active)?;
     let followed = active.clone();

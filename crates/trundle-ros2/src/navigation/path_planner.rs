@@ -6,11 +6,12 @@ use super::goal_pose::{GoalPoseError, in_map};
 use crate::Ros2Error;
 use crate::convert::{path, stamp};
 use crate::generated::geometry_msgs::PoseStamped;
+use crate::generated::nav_msgs::PathMessage;
 use crate::generated::nav2_msgs::{
     ComputePathToPose, ComputePathToPoseGoal as Goal, ComputePathToPoseResult as Outcome,
 };
-use crate::node::{ActionHandle, GoalEnd, GoalHandler, GoalId, RosNode, arrives};
-use crate::outputs::FrameNames;
+use crate::node::{ActionHandle, GoalEnd, GoalHandler, GoalId, RosNode, arrives, qos};
+use crate::outputs::{FrameNames, OutputTopic};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Instant;
@@ -52,12 +53,13 @@ pub fn offer(
     let planner = Planner::new(robot.planning, &footprint, robot.limits, robot.drive).map_err(unusable)?;
     let (plans, wanted) = sync_channel(MAX_WAITING_PLANS);
     let (own, own_frames, clock) = (active.clone(), frames.clone(), active.clock());
+    let whole_path = OutputTopic::new(node, "plan", &qos::reliable(1))?;
     let handle = ActionHandle::<ComputePathToPose>::offer(node, "compute_path_to_pose", clock, |handle| {
         Box::new(Handler { handle, active: own, frames: own_frames, plans })
     })?;
-    let frame = frames.map.clone();
+    let outputs = PlanOutputs { handle, whole_path, frame: frames.map.clone() };
     let thread = std::thread::Builder::new().name("ros2-planner".to_owned());
-    thread.spawn(move || plan_all(planner, &wanted, &handle, &frame))?;
+    thread.spawn(move || outputs.plan_all(planner, &wanted))?;
     Ok(())
 }
 
@@ -122,25 +124,34 @@ impl GoalHandler<ComputePathToPose> for Handler {
     }
 }
 
-/// Makes the plans one after the other, until the node ends.
-fn plan_all(
-    mut planner: Planner,
-    plans: &Receiver<RequestedPlan>,
-    handle: &ActionHandle<ComputePathToPose>,
-    frame: &str,
-) {
-    for RequestedPlan { id, start, goal, map, at } in plans {
-        let started = Instant::now();
-        let plan = planner.plan(&map.grid, start, Twist2::ZERO, goal);
-        let planning_time = stamp::duration(started.elapsed().as_secs_f64());
-        let (end, result) = match &plan {
-            Plan::Found(found) => {
-                let poses: Vec<Pose2> = found.trajectory.points().iter().map(|point| point.pose).collect();
-                (GoalEnd::Succeeded, Outcome { path: small_path(&poses, at, frame), ..Outcome::default() })
-            }
-            refused => (GoalEnd::Aborted, refusal(refused)),
-        };
-        handle.end(&id, end, Outcome { planning_time, ..result });
+/// Receivers of plans.
+struct PlanOutputs {
+    handle: ActionHandle<ComputePathToPose>,
+    /// The topic on which Nav2's planner publishes its paths. A result has no room for them.
+    whole_path: OutputTopic<PathMessage>,
+    /// Name of the map's frame.
+    frame: String,
+}
+
+impl PlanOutputs {
+    /// Makes the plans one after the other, until the node ends.
+    fn plan_all(&self, mut planner: Planner, plans: &Receiver<RequestedPlan>) {
+        for RequestedPlan { id, start, goal, map, at } in plans {
+            let started = Instant::now();
+            let plan = planner.plan(&map.grid, start, Twist2::ZERO, goal);
+            let planning_time = stamp::duration(started.elapsed().as_secs_f64());
+            let (end, result) = match &plan {
+                Plan::Found(found) => {
+                    let points = found.trajectory.points().iter();
+                    let poses: Vec<Pose2> = points.map(|point| point.pose).collect();
+                    self.whole_path.publish(path::to_ros(&poses, at, &self.frame));
+                    let path = small_path(&poses, at, &self.frame);
+                    (GoalEnd::Succeeded, Outcome { path, ..Outcome::default() })
+                }
+                refused => (GoalEnd::Aborted, refusal(refused)),
+            };
+            self.handle.end(&id, end, Outcome { planning_time, ..result });
+        }
     }
 }
 
@@ -153,10 +164,9 @@ fn refusal(plan: &Plan) -> Outcome {
 }
 
 /// As many poses of a path as fit into its reply.
-fn small_path(poses: &[Pose2], at: Stamp, frame: &str) -> crate::generated::nav_msgs::PathMessage {
+fn small_path(poses: &[Pose2], at: Stamp, frame: &str) -> PathMessage {
     let of_count = |count| path::to_ros(&path::thinned(poses, count), at, frame);
-    let fits =
-        |path: &crate::generated::nav_msgs::PathMessage| arrives(&(path, [0_u8; REPLY_OVERHEAD_BYTES]));
+    let fits = |path: &PathMessage| arrives(&(path, [0_u8; REPLY_OVERHEAD_BYTES]));
     (2..=MAX_POSES).rev().map(of_count).find(fits).unwrap_or_default()
 }
 

@@ -119,8 +119,12 @@ where
     fn send_result(&self, request: ros2_client::RmwRequestId, status: i8, result: A::Result) {
         let mut response = GetResultResponse { status: status_of(status), result };
         if let Some(bytes) = reply::excess(&response) {
-            self.diagnostics.warn(&self.name, reply::message(bytes));
-            response.result = A::Result::default();
+            self.diagnostics.warn(&self.name, reply::shortening(bytes));
+            let fits = |result: &A::Result| {
+                let status = status_of(status);
+                reply::arrives(&GetResultResponse { status, result: result.clone() })
+            };
+            response.result = reply::shortened(&response.result, fits).unwrap_or_default();
         }
         if self.server.send_result(request, response).is_err() {
             tracing::debug!("a result of {} was not sent", self.name);

@@ -15,7 +15,17 @@ pub enum Networks {
     All,
 }
 
+/// What programs of ROS 2 on this computer need so that they find a node on the loopback interface alone.
+pub(crate) const DISCOVERY: &str =
+    "ROS 2 programs on this computer need `export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST`";
+
 impl Networks {
+    /// What other programs need to find a node on this computer alone; `None` on other networks.
+    #[must_use]
+    pub fn discovery_hint(&self) -> Option<&'static str> {
+        (*self == Self::Loopback).then_some(DISCOVERY)
+    }
+
     /// Addresses of the interfaces; `None` for all.
     pub(super) fn addresses(&self) -> Option<Vec<IpAddr>> {
         match self {
@@ -66,7 +76,10 @@ mod tests {
 
     #[test]
     fn only_loopback_is_without_warning() {
-        assert_eq!("loopback".parse::<Networks>().unwrap().warning(), None);
+        let loopback: Networks = "loopback".parse().unwrap();
+        assert_eq!(loopback.warning(), None);
+        assert!(loopback.discovery_hint().unwrap().contains("ROS_AUTOMATIC_DISCOVERY_RANGE"));
+        assert_eq!(Networks::All.discovery_hint(), None);
         let lan: Networks = "192.168.1.5".parse().unwrap();
         assert!(lan.warning().unwrap().contains("192.168.1.5"));
         assert_eq!(Networks::All.addresses(), None);

@@ -4,13 +4,13 @@ use super::ServerSettings;
 use super::clock_publisher::ClockPublisher;
 use super::sensor_topics::SensorTopics;
 use crate::convert::odometry::OdometryFrames;
-use crate::convert::{battery, odometry, scan, transform, twist};
-use crate::generated::geometry_msgs::{Twist, TwistStamped};
+use crate::convert::{battery, odometry, scan, transform};
 use crate::generated::nav_msgs::OdometryMessage;
 use crate::generated::sensor_msgs::{BatteryState, LaserScan};
 use crate::generated::tf2_msgs::TFMessage;
 use crate::node::{RosNode, qos};
 use crate::outputs::OutputTopic;
+use crate::twist_topic::subscribe_twists;
 use crate::{Ros2Error, Ros2Options};
 use nalgebra::Matrix3;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -184,21 +184,12 @@ impl BodyServer {
 type NewestCommand = Arc<Mutex<Option<(Twist2, Instant)>>>;
 
 /// Keeps the newest command; one that is not usable is reported and stops the base.
-fn subscribe_commands(node: &mut RosNode, stamped: bool) -> Result<NewestCommand, Ros2Error> {
+fn subscribe_commands(node: &mut RosNode, is_stamped: bool) -> Result<NewestCommand, Ros2Error> {
     let command = NewestCommand::default();
-    let (kept, diagnostics, name) =
-        (Arc::clone(&command), node.diagnostics(), node.names().resolve("cmd_vel"));
-    let keep = move |message: &Twist| {
-        let usable = twist::from_ros(message).map_err(|error| diagnostics.warn(&name, error.to_string()));
-        *kept.lock().unwrap_or_else(PoisonError::into_inner) =
-            Some((usable.unwrap_or_default(), Instant::now()));
-    };
-    if stamped {
-        node.subscribe("cmd_vel", &qos::reliable(1), None, move |message: TwistStamped| {
-            keep(&message.twist)
-        })?;
-    } else {
-        node.subscribe("cmd_vel", &qos::reliable(1), None, move |message: Twist| keep(&message))?;
-    }
+    let kept = Arc::clone(&command);
+    subscribe_twists(node, "cmd_vel", is_stamped, move |twist| {
+        let newest = (twist.unwrap_or_default(), Instant::now());
+        *kept.lock().unwrap_or_else(PoisonError::into_inner) = Some(newest);
+    })?;
     Ok(command)
 }

@@ -63,3 +63,23 @@ fn the_sensors_of_a_body_are_published_and_images_from_the_first_reader_on() {
     let raw = compressed_depth_from_ros(depth.get().unwrap()).unwrap();
     assert_eq!(raw.bytes, [1.25_f32.to_le_bytes(); 8].concat());
 }
+
+#[test]
+fn the_intrinsics_come_to_a_reader_that_reads_no_image() {
+    let domain = Domain::new();
+    let (mut sender, mut receiver) = (domain.node("sender"), domain.node("receiver"));
+    let settings = ServerSettings::new(FrameNames::default(), true);
+    let camera = PinholeCamera::new((4, 2), (3.0, 3.0), (1.5, 0.5), Distortion::default()).unwrap();
+    let mut topics = SensorTopics::new(&mut sender, &settings, camera, DifferentialDrive::KOBUKI).unwrap();
+    let (info, on_info) = Newest::<CameraInfoMessage>::new();
+    receiver.subscribe("camera/depth/camera_info", &qos::reliable(5), None, on_info).unwrap();
+    let (_sending, _receiving) = (sender.start().unwrap(), receiver.start().unwrap());
+    let stamp = Stamp::from_nanos(7);
+    let (color, metres) = (ColorImage::filled(4, 2, [9; 3]), DepthImage::filled(4, 2, 1.25));
+    let event = SensorEvent::Rgbd(RgbdImage::new(stamp, color, metres).unwrap());
+    wait_until("camera_info", || {
+        topics.publish(&event, stamp);
+        info.get().is_some()
+    });
+    assert_eq!(info.get().unwrap().header.stamp.nanosec, 7);
+}

@@ -2,7 +2,7 @@
 
 use super::RosMessage;
 use crate::ros::cdr_writer::CdrWriter;
-use trundle_core::{Beam, GyroRate, PinholeCamera, Scan, Stamp};
+use trundle_core::{Beam, BeamTimes, GyroRate, PinholeCamera, Scan, Stamp};
 
 /// Bytes in front of a depth image: no quantisation. Source: `compressed_depth_image_transport`.
 const DEPTH_HEADER: [u8; 12] = [0; 12];
@@ -61,11 +61,40 @@ pub fn scan(frame: &str, scan: &Scan) -> RosMessage {
     let last = first + step * count.saturating_sub(1) as f64;
     let writer = CdrWriter::with_header(scan.stamp(), frame);
     let writer = writer.f32s([first as f32, last as f32, step as f32, 0.0, 0.0, 0.0, MAX_RANGE_M]);
-    let range = |beam: &Beam| match beam {
+    let writer = writer.count(count).f32s(scan.beams().iter().map(range)).count(0);
+    RosMessage::new("sensor_msgs/msg/LaserScan", writer)
+}
+
+/// As [`scan`], for a reader that needs all of a laser's sweep: the beams in the order of their times, the time between them, and the range up
+/// to which beams without a return are free.
+#[must_use]
+pub fn sweep(frame: &str, scan: &Scan) -> RosMessage {
+    let last = scan.beams().len().saturating_sub(1);
+    let times = scan.beam_times().unwrap_or(BeamTimes { first_s: 0.0, step_s: 0.0 });
+    let falls = times.step_s < 0.0;
+    let (first, end) = if falls { (last, 0) } else { (0, last) };
+    let step = scan.angle_increment() * if falls { -1.0 } else { 1.0 };
+    let writer = CdrWriter::with_header(scan.stamp().after(times.of(first)), frame);
+    let fields = [scan.angle(first), scan.angle(end), step, times.step_s.abs(), 0.0, 0.0, free_range(scan)];
+    let writer = writer.f32s(fields.map(|field| field as f32)).count(scan.beams().len());
+    let ranges = scan.beams().iter().map(range);
+    let writer = if falls { writer.f32s(ranges.rev()) } else { writer.f32s(ranges) };
+    RosMessage::new("sensor_msgs/msg/LaserScan", writer.count(0))
+}
+
+/// Range up to which the beams without a return are free \[m\]; [`MAX_RANGE_M`] if every beam has a return.
+fn free_range(scan: &Scan) -> f64 {
+    let free = scan.beams().iter().filter_map(|beam| match beam {
+        Beam::Free { range } => Some(*range),
+        _ => None,
+    });
+    free.reduce(f64::max).unwrap_or(f64::from(MAX_RANGE_M))
+}
+
+fn range(beam: &Beam) -> f32 {
+    match beam {
         Beam::Hit { range } => *range as f32,
         Beam::Free { .. } => f32::INFINITY,
         Beam::Unseen => f32::NAN,
-    };
-    let writer = writer.count(count).f32s(scan.beams().iter().map(range)).count(0);
-    RosMessage::new("sensor_msgs/msg/LaserScan", writer)
+    }
 }

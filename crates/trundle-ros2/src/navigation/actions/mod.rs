@@ -10,6 +10,7 @@ mod waypoints;
 use crate::convert::{pose, stamp};
 use crate::generated::builtin_interfaces::Duration;
 use crate::generated::geometry_msgs::PoseStamped;
+use crate::navigation::NavigationRefusal;
 use crate::outputs::FrameNames;
 use trundle_app::operator::RunView;
 use trundle_core::Pose2;
@@ -23,6 +24,15 @@ fn current_pose(view: &RunView, frames: &FrameNames) -> PoseStamped {
 /// Seconds as a duration; 0 if they are not known.
 fn duration(seconds: f64) -> Duration {
     stamp::duration(if seconds.is_finite() { seconds } else { 0.0 })
+}
+
+/// Fails a goal that names a behavior tree; `failed` makes the result from the message.
+fn refuse_behavior_tree<R>(tree: &str, failed: impl FnOnce(String) -> R) -> Result<(), NavigationRefusal<R>> {
+    if tree.is_empty() {
+        return Ok(());
+    }
+    let message = format!("behavior_tree is '{tree}', expected none: trundle has no behavior trees");
+    Err(NavigationRefusal::Failed(failed(message)))
 }
 
 /// Tasks that lead through poses, within `tolerance` m of each, and end exactly at the last one.

@@ -1,6 +1,6 @@
 //! `NavigateToPose`.
 
-use super::{current_pose, duration, left};
+use super::{current_pose, duration, left, refuse_behavior_tree};
 use crate::generated::nav2_msgs::{
     NavigateToPose, NavigateToPoseFeedback as Feedback, NavigateToPoseGoal as Goal,
     NavigateToPoseResult as Outcome,
@@ -16,14 +16,10 @@ use trundle_runtime::Task;
 
 impl NavigationAction for NavigateToPose {
     fn tasks(goal: &Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, NavigationRefusal<Outcome>> {
-        if !goal.behavior_tree.is_empty() {
-            let error_msg = format!(
-                "behavior_tree is '{}', expected none: trundle has no behavior trees",
-                goal.behavior_tree
-            );
-            let error_code = Outcome::FAILED_TO_LOAD_BEHAVIOR_TREE;
-            return Err(NavigationRefusal::Failed(Outcome { error_code, error_msg }));
-        }
+        refuse_behavior_tree(&goal.behavior_tree, |error_msg| Outcome {
+            error_code: Outcome::FAILED_TO_LOAD_BEHAVIOR_TREE,
+            error_msg,
+        })?;
         let failed = |error_msg| Outcome { error_code: Outcome::TF_ERROR, error_msg };
         let pose =
             in_map(&goal.pose, context.frames, context.view).map_err(|error| pose_error(error, failed))?;
@@ -70,6 +66,11 @@ mod tests {
         };
         assert_eq!(result.error_code, Outcome::TF_ERROR);
         assert!(result.error_msg.contains("'moon', expected map, odom or base_link"));
+        let with_tree = Goal { behavior_tree: "tree.xml".to_owned(), ..goal(1.0, "map") };
+        let Err(NavigationRefusal::Failed(result)) = NavigateToPose::tasks(&with_tree, &context) else {
+            panic!()
+        };
+        assert_eq!(result.error_code, 9001);
         assert!(matches!(
             NavigateToPose::tasks(&goal(f64::NAN, "map"), &context),
             Err(NavigationRefusal::Refused(_))

@@ -44,7 +44,7 @@ impl NavigationAction for FollowWaypoints {
     }
 
     fn result(goal: &Goal, outcome: &NavigationOutcome, _time_s: f64) -> Outcome {
-        let missed = |(task, reason): &(usize, trundle_runtime::Reason)| {
+        let missed = |(task, reason): (usize, &trundle_runtime::Reason)| {
             let index = (goal.goal_index as usize + task) % goal.poses.len().max(1);
             WaypointStatus {
                 waypoint_status: WaypointStatus::FAILED,
@@ -57,7 +57,7 @@ impl NavigationAction for FollowWaypoints {
         let error_code =
             outcome.code(Outcome::UNKNOWN, |_| Outcome::STOP_ON_MISSED_WAYPOINT, Outcome::UNKNOWN);
         Outcome {
-            missed_waypoints: outcome.missed.iter().map(missed).collect(),
+            missed_waypoints: outcome.missed().map(missed).collect(),
             error_code,
             error_msg: outcome.message.clone(),
         }
