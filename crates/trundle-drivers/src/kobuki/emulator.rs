@@ -110,6 +110,12 @@ impl EmulatedKobuki {
         }
     }
 
+    /// The base with this unique id.
+    #[must_use]
+    pub fn with_unique_id(self, unique_id: UniqueId) -> Self {
+        Self { unique_id, ..self }
+    }
+
     /// The bytes of the next packet, 20 ms after the last one.
     pub fn feedback(&mut self, state: &KobukiState) -> Vec<u8> {
         self.stamp_ms = self.stamp_ms.wrapping_add(FEEDBACK_PERIOD_MS);

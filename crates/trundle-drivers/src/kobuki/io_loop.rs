@@ -2,18 +2,22 @@
 //!
 //! The port is closed when the link counts as lost, which discards bytes from before the loss. The first bytes of a new connection are zero
 //! speed. Commands that come while the link is down are dropped.
+//!
+//! Two bases on one port are a lost link until a window of packets is that of one base. A base other than the run's is a lost link until
+//! the run's base answers.
 
 use super::base_config::KobukiBaseConfig;
+use super::base_identity::BaseIdentity;
 use super::base_status::{Status, locked};
 use super::command_schedule::CommandSchedule;
 use super::decoder::FeedbackDecoder;
 use super::feedback_events::FeedbackEvents;
 use super::link::{ByteLink, Connector};
-use super::link_state::LinkState;
+use super::link_state::{LinkState, Loss, LostLink};
 use super::outbox::Outbox;
 use super::probe::greeting;
 use super::protocol::{BaseControl, Feedback, KobukiCommand, Outputs};
-use super::stream_check::StreamCheck;
+use super::stream_check::{StreamCheck, StreamFault};
 use crate::clock::HostClock;
 use std::io;
 use std::sync::mpsc::{Receiver, SyncSender};
@@ -52,6 +56,7 @@ pub(super) struct IoLoop {
     events: FeedbackEvents,
     schedule: CommandSchedule,
     check: StreamCheck,
+    identity: BaseIdentity,
     outbox: Outbox,
     /// Last requested outputs. The base loses its outputs when it is switched off.
     outputs: Option<Outputs>,
@@ -67,6 +72,7 @@ impl IoLoop {
         (link, decoder): (Box<dyn ByteLink>, FeedbackDecoder),
         queues: Queues,
     ) -> Self {
+        let identity = BaseIdentity::new(locked(&queues.status).versions.unique_id);
         Self {
             config,
             state: LinkState::new(clock(), config.min_retry_s),
@@ -78,6 +84,7 @@ impl IoLoop {
             events: FeedbackEvents::new(config.gyro_source, config.transport_delay_s),
             schedule: CommandSchedule::new(config.command_timeout_s),
             check: StreamCheck::default(),
+            identity,
             outbox: Outbox::default(),
             outputs: None,
             last_ms: None,
@@ -97,26 +104,29 @@ impl IoLoop {
             None => self.reconnect(),
             Some(mut link) => match self.exchange(&mut *link) {
                 Ok(()) => self.link = Some(link),
-                Err(error) => self.lose(&error),
+                Err(lost) => self.lose(&lost),
             },
         }
     }
 
     /// Reads packets, stores commands, writes.
-    fn exchange(&mut self, link: &mut dyn ByteLink) -> io::Result<()> {
+    fn exchange(&mut self, link: &mut dyn ByteLink) -> Result<(), LostLink> {
         let before = (self.clock)();
         self.read(link)?;
         let limit = if self.state.is_up { self.config.silence_limit_s } else { FIRST_PACKET_LIMIT_S };
         // Packets that waited during a pause of this thread have been read: only the time before counts.
         if before - self.state.since >= limit {
-            return Err(io::Error::new(io::ErrorKind::TimedOut, format!("no new packet came for {limit} s")));
+            return Err(LostLink::new(Loss::Silence, format!("no new packet came for {limit} s")));
         }
         let now = (self.clock)();
         self.take_commands(now);
-        self.write(link, now)
+        if self.identity.is_request_due(now) {
+            self.outbox.push(&greeting());
+        }
+        Ok(self.write(link, now)?)
     }
 
-    fn read(&mut self, link: &mut dyn ByteLink) -> io::Result<()> {
+    fn read(&mut self, link: &mut dyn ByteLink) -> Result<(), LostLink> {
         let mut buffer = [0; 4096];
         let bytes = link.read(&mut buffer, READ_WAIT)?;
         if bytes == 0 {
@@ -127,22 +137,30 @@ impl IoLoop {
         let mut packets = Vec::new();
         self.decoder.push(&buffer[..bytes], |feedback| packets.push(feedback));
         self.check.on_refused(self.decoder.counters().refused() - refused);
-        packets.into_iter().for_each(|feedback| self.on_feedback(feedback, arrival));
-        self.report_fault();
+        packets.into_iter().try_for_each(|feedback| self.on_feedback(feedback, arrival))?;
+        self.report_fault()?;
         let mut status = locked(&self.queues.status);
         status.counters.decoder = self.decoder.counters();
         status.counters.clock_jumps = self.events.clock_jumps();
         Ok(())
     }
 
-    fn on_feedback(&mut self, feedback: Feedback, arrival: Stamp) {
+    /// Handles a packet.
+    ///
+    /// # Errors
+    /// When another base answers than the run's.
+    fn on_feedback(&mut self, feedback: Feedback, arrival: Stamp) -> Result<(), LostLink> {
+        if let Some(id) = feedback.unique_id {
+            self.identity.on_answer(id).map_err(|other| LostLink::new(Loss::OtherBase, other))?;
+        }
         if let Some(core) = feedback.core {
             self.check.on_packet(core.stamp_ms);
         }
         // A packet with the stamp of the previous one has no new content.
         let stamp_ms = feedback.core.map(|core| core.stamp_ms);
         if stamp_ms.is_some() && std::mem::replace(&mut self.last_ms, stamp_ms) != stamp_ms {
-            let events = if self.state.on_packet(arrival, self.config.silence_limit_s) {
+            let is_steady = self.state.on_packet(arrival, self.config.silence_limit_s);
+            let events = if is_steady && self.identity.is_confirmed() {
                 self.link_up(arrival);
                 self.events.events_after_link_up(&feedback, arrival)
             } else if self.state.is_up {
@@ -152,11 +170,11 @@ impl IoLoop {
             };
             events.into_iter().for_each(|event| self.deliver(event));
         }
-        self.report_identity(&feedback);
         let mut status = locked(&self.queues.status);
         status.versions.update(&feedback);
         status.gains = feedback.gains.or(status.gains);
         status.latest = Some(feedback);
+        Ok(())
     }
 
     /// The first packet of a connection: commands from before are dropped, the outputs are set. Zero speed is sent since the port is open.
@@ -204,14 +222,16 @@ impl IoLoop {
         self.outbox.write(link, now)
     }
 
-    fn lose(&mut self, error: &io::Error) {
+    fn lose(&mut self, lost: &LostLink) {
         let now = (self.clock)();
         let was_up = self.state.is_up;
-        if was_up {
+        if was_up || lost.loss == Loss::OtherBase && self.identity.refusals().is_power_of_two() {
             tracing::warn!(
-                "port {}: the link to the base is lost: {error}; it is opened again",
+                "port {}: the link to the base is lost: {lost}; it is opened again",
                 self.connector.port()
             );
+        }
+        if was_up {
             let event = self.events.link_event(false, now);
             self.deliver(event);
         }
@@ -219,7 +239,8 @@ impl IoLoop {
         status.counters.link_losses += u64::from(was_up);
         status.is_up = false;
         drop(status);
-        self.state.lose(now, error.kind() == io::ErrorKind::TimedOut);
+        self.state.lose(now, lost.loss);
+        self.identity.forget();
         self.decoder.clear();
         self.outbox.clear();
         self.schedule.restart();
@@ -256,9 +277,18 @@ impl IoLoop {
     }
 
     /// Warns when the stream becomes faulty: the first time, the second, the fourth and so on.
-    fn report_fault(&mut self) {
-        let Some((fault, count)) = self.check.new_fault() else { return };
-        locked(&self.queues.status).counters.stream_faults += 1;
+    ///
+    /// # Errors
+    /// When two bases send on the port and the link is up. A link that is down stays so until one base has sent alone for a second.
+    fn report_fault(&mut self) -> Result<(), LostLink> {
+        let new = self.check.new_fault();
+        locked(&self.queues.status).counters.stream_faults += u64::from(new.is_some());
+        if let Some(fault @ StreamFault::TwoSources { .. }) = self.check.fault() {
+            self.state.restart_count();
+            let lost = self.state.is_up.then(|| LostLink::new(Loss::OtherBase, fault));
+            return lost.map_or(Ok(()), Err);
+        }
+        let Some((fault, count)) = new else { return Ok(()) };
         let port = self.connector.port();
         match count {
             1 => tracing::warn!("port {port}: {fault}"),
@@ -267,19 +297,7 @@ impl IoLoop {
             }
             _ => {}
         }
-    }
-
-    /// Warns if the base differs from the previous one.
-    fn report_identity(&self, feedback: &Feedback) {
-        let known = locked(&self.queues.status).versions.unique_id;
-        if let (Some(known), Some(id)) = (known, feedback.unique_id)
-            && known != id
-        {
-            tracing::warn!(
-                "port {}: base {id} answers, expected base {known}: two bases are in use",
-                self.connector.port()
-            );
-        }
+        Ok(())
     }
 
     fn stop(&mut self) {

@@ -8,6 +8,7 @@
 //! | [`base`], [`base_config`], [`base_status`], [`start_error`] | the driver: threads, settings, counters, errors of the start |
 //! | [`base_guard`] | a process that stops the base if this process dies (Unix) |
 //! | [`stream_check`] | signs of two users of one port |
+//! | `base_identity` | the unique id of the base on the port |
 //! | [`link`] | a link of bytes, and its opener |
 //! | [`serial_port`] | a serial port of the system (Unix) |
 //! | [`emulator`] | the device's end of the protocol |
@@ -17,6 +18,7 @@ pub mod base;
 pub mod base_config;
 #[cfg(unix)]
 pub mod base_guard;
+mod base_identity;
 pub mod base_status;
 mod command_schedule;
 pub mod decoder;
