@@ -66,9 +66,9 @@ pub fn run_in_real_time<B: BackgroundBody>(
         .map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
     pool.install(|| {
         let mut live = ThreadedBody::start(LoopTimerConfig::default(), at(WORKER_NICENESS))?;
-        let body =
+        let mut body =
             start_body(live.event_sender(), ThreadPlacement { core: outside, ..ThreadPlacement::default() })?;
-        live.connect(body.commands(), body.contacts());
+        live.connect(&mut body);
         let before = thread_time().unwrap_or_default();
         let result = run_on_body(setup, &mut live, recorder, log, front_end);
         let control = thread_time().unwrap_or_default().saturating_sub(before);

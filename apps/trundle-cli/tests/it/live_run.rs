@@ -131,6 +131,8 @@ fn a_goal_is_reached_over_a_serial_line_and_a_camera_stream() {
     let truth = robot.stop();
     assert!((first_number(&truth, "true pose from the start") - 0.6).abs() < 0.03, "{truth}");
     assert_eq!(first_number(&truth, "true contacts"), 0.0);
+    let row = |name: &str| truth.lines().find_map(|line| line.trim().strip_prefix(name)).unwrap().trim();
+    assert_eq!((row("first light"), row("melodies received")), ("off", "cleaning start, cleaning end"), "{truth}");
     assert!(!folder.path().join("out/groundtruth.txt").exists(), "a real robot knows no truth");
     replayed_alike(folder.path());
 }

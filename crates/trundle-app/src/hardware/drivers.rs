@@ -12,7 +12,7 @@ use trundle_drivers::camera::camera_thread::{
 };
 use trundle_drivers::camera::{CameraError, CameraInfo, DepthCamera};
 use trundle_drivers::clock::{DeviceClock, DeviceClockConfig, HostClock};
-use trundle_drivers::kobuki::{BaseCounters, KobukiBase, KobukiBaseConfig, Versions};
+use trundle_drivers::kobuki::{Accessories, BaseCounters, KobukiBase, KobukiBaseConfig, Versions};
 use trundle_drivers::{BaseSpec, CameraSpec};
 use trundle_runtime::CameraMount;
 
@@ -235,6 +235,12 @@ impl Drivers {
     #[must_use]
     pub fn commands(&self) -> Sender<Twist2> {
         self.base.commands()
+    }
+
+    /// Lights and sounds of the base.
+    #[must_use]
+    pub fn accessories(&self) -> Accessories {
+        self.base.accessories()
     }
 
     /// Versions of the base.

@@ -1,7 +1,7 @@
 //! A body that runs in its own threads and sends its events into the run's inbox.
 
 use super::MemoryUsage;
-use crate::AppError;
+use crate::{AppError, StateDisplay};
 use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
@@ -33,6 +33,11 @@ pub trait BackgroundBody {
 
     /// The count of separate contacts, in truth; `None` if only the bumper reports contacts.
     fn contacts(&self) -> Option<Arc<AtomicU32>>;
+
+    /// The body's lights and sounds; `None` (the default) for a body without them.
+    fn state_display(&mut self) -> Option<StateDisplay> {
+        None
+    }
 
     /// Ends the body's threads.
     ///

@@ -1,7 +1,7 @@
 //! A body of drivers with their own threads: base, camera, laser.
 
 use super::{BackgroundBody, BodyTiming, EventFeed};
-use crate::AppError;
+use crate::{AppError, StateDisplay};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Sender, channel};
@@ -21,6 +21,7 @@ pub struct LiveBody {
     is_over: Arc<AtomicBool>,
     watch: JoinHandle<()>,
     stop_drivers: Box<dyn FnOnce() -> Option<String> + Send>,
+    state_display: Option<StateDisplay>,
 }
 
 impl LiveBody {
@@ -49,7 +50,14 @@ impl LiveBody {
             .spawn(watch)
             .map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
         let commands = commands.unwrap_or_else(|| channel().0);
-        Ok(Self { commands, feed, is_over, watch, stop_drivers: Box::new(stop_drivers) })
+        let stop_drivers = Box::new(stop_drivers);
+        Ok(Self { commands, feed, is_over, watch, stop_drivers, state_display: None })
+    }
+
+    /// The body with lights and sounds that show the state of the run.
+    #[must_use]
+    pub fn with_state_display(self, display: StateDisplay) -> Self {
+        Self { state_display: Some(display), ..self }
     }
 }
 
@@ -60,6 +68,10 @@ impl BackgroundBody for LiveBody {
 
     fn contacts(&self) -> Option<Arc<AtomicU32>> {
         None
+    }
+
+    fn state_display(&mut self) -> Option<StateDisplay> {
+        self.state_display.take()
     }
 
     fn stop(self) -> Result<BodyTiming, AppError> {

@@ -70,13 +70,14 @@ impl BaseIdentity {
         self.refusals
     }
 
-    /// Whether the id must be requested at `now`; a request counts as sent.
-    pub(super) fn is_request_due(&mut self, now: Stamp) -> bool {
-        let is_due = !self.is_confirmed() && self.requested.is_none_or(|last| now - last >= REQUEST_PERIOD_S);
-        if is_due {
-            self.requested = Some(now);
-        }
-        is_due
+    /// Records a request for the id at `now`.
+    pub(super) fn note_request(&mut self, now: Stamp) {
+        self.requested = Some(now);
+    }
+
+    /// Whether the id must be requested at `now`.
+    pub(super) fn is_request_due(&self, now: Stamp) -> bool {
+        !self.is_confirmed() && self.requested.is_none_or(|last| now - last >= REQUEST_PERIOD_S)
     }
 }
 
@@ -119,7 +120,11 @@ mod tests {
         let mut identity = BaseIdentity::new(Some(OURS));
         assert!(!identity.is_request_due(at(0)));
         identity.forget();
-        let due: Vec<i64> = (0..1200).step_by(100).filter(|ms| identity.is_request_due(at(*ms))).collect();
+        let mut due = Vec::new();
+        for ms in (0..1200).step_by(100).filter(|ms| identity.is_request_due(at(*ms))) {
+            identity.note_request(at(ms));
+            due.push(ms);
+        }
         assert_eq!(due, [0, 500, 1000]);
         identity.on_answer(OURS).unwrap();
         assert!(!identity.is_request_due(at(5000)));

@@ -159,6 +159,11 @@ impl EmulatedKobuki {
         self.decoder.counters()
     }
 
+    /// The requested sounds since the last removal, at most 64.
+    pub fn sounds(&self) -> &[KobukiCommand] {
+        &self.sounds
+    }
+
     /// Returns and removes the requested sounds since the last call, at most 64.
     pub fn take_sounds(&mut self) -> Vec<KobukiCommand> {
         std::mem::take(&mut self.sounds)

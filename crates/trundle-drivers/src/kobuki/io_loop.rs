@@ -109,9 +109,9 @@ impl IoLoop {
         }
     }
 
-    /// Reads packets, stores commands, writes.
+    /// Reads packets, stores commands, writes. A speed goes out before accessories that came with it.
     fn exchange(&mut self, link: &mut dyn ByteLink) -> Result<(), LostLink> {
-        let before = (self.clock)();
+        let (before, was_up) = ((self.clock)(), self.state.is_up);
         self.read(link)?;
         let limit = if self.state.is_up { self.config.silence_limit_s } else { FIRST_PACKET_LIMIT_S };
         // Packets that waited during a pause of this thread have been read: only the time before counts.
@@ -119,11 +119,16 @@ impl IoLoop {
             return Err(LostLink::new(Loss::Silence, format!("no new packet came for {limit} s")));
         }
         let now = (self.clock)();
-        self.take_commands(now);
-        if self.identity.is_request_due(now) {
-            self.outbox.push(&greeting());
+        self.take_speeds(now);
+        self.queue_speed(now);
+        if self.state.is_up && !was_up {
+            self.restore_outputs();
         }
-        Ok(self.write(link, now)?)
+        self.take_accessories();
+        if self.identity.is_request_due(now) {
+            self.greet(now);
+        }
+        Ok(self.outbox.write(link, now)?)
     }
 
     fn read(&mut self, link: &mut dyn ByteLink) -> Result<(), LostLink> {
@@ -177,18 +182,22 @@ impl IoLoop {
         Ok(())
     }
 
-    /// The first packet of a connection: commands from before are dropped, the outputs are set. Zero speed is sent since the port is open.
+    /// The first packet of a connection: commands from before are dropped. Zero speed is sent since the port is open.
     fn link_up(&mut self, now: Stamp) {
-        self.take_commands(now);
+        self.take_speeds(now);
+        self.take_accessories();
         (self.state.is_up, self.state.retry_s) = (true, self.config.min_retry_s);
-        if let Some(outputs) = self.outputs {
-            self.outbox.push(&KobukiCommand::Outputs(outputs).encode());
-        }
         locked(&self.queues.status).is_up = true;
         tracing::info!("port {}: the base answers", self.connector.port());
     }
 
-    fn take_commands(&mut self, now: Stamp) {
+    fn restore_outputs(&mut self) {
+        if let Some(outputs) = self.outputs {
+            self.outbox.push(&KobukiCommand::Outputs(outputs).encode());
+        }
+    }
+
+    fn take_speeds(&mut self, now: Stamp) {
         let mut dropped = 0;
         for twist in self.queues.commands.try_iter().take(MAX_COMMANDS_AT_ONCE) {
             if self.state.is_up {
@@ -197,6 +206,11 @@ impl IoLoop {
                 dropped += 1;
             }
         }
+        self.count_dropped(dropped);
+    }
+
+    fn take_accessories(&mut self) {
+        let mut dropped = 0;
         for command in self.queues.accessories.try_iter().take(MAX_COMMANDS_AT_ONCE) {
             if let KobukiCommand::Outputs(outputs) = command {
                 self.outputs = Some(outputs);
@@ -207,19 +221,23 @@ impl IoLoop {
                 dropped += 1;
             }
         }
-        if dropped > 0 {
-            locked(&self.queues.status).counters.commands_dropped += dropped;
+        self.count_dropped(dropped);
+    }
+
+    fn count_dropped(&self, commands: u64) {
+        if commands > 0 {
+            locked(&self.queues.status).counters.commands_dropped += commands;
         }
     }
 
-    fn write(&mut self, link: &mut dyn ByteLink, now: Stamp) -> io::Result<()> {
+    /// Queues the speed that is due, if the line has taken all earlier bytes.
+    fn queue_speed(&mut self, now: Stamp) {
         if self.outbox.is_empty()
             && let Some(control) = self.schedule.due(now)
         {
             self.outbox.push(&KobukiCommand::BaseControl(control).encode());
             locked(&self.queues.status).counters.speeds_sent += 1;
         }
-        self.outbox.write(link, now)
     }
 
     fn lose(&mut self, lost: &LostLink) {
@@ -249,7 +267,8 @@ impl IoLoop {
     /// Opens the port if the next attempt is due.
     fn reconnect(&mut self) {
         let now = (self.clock)();
-        self.take_commands(now);
+        self.take_speeds(now);
+        self.take_accessories();
         if now - self.state.since < self.state.retry_s {
             return std::thread::sleep(CLOSED_WAIT);
         }
@@ -258,11 +277,16 @@ impl IoLoop {
         locked(&self.queues.status).counters.reconnects += 1;
         match self.connector.connect() {
             Ok(link) => {
-                self.outbox.push(&greeting());
+                self.greet(now);
                 self.link = Some(link);
             }
             Err(error) => tracing::debug!("{error}"),
         }
+    }
+
+    fn greet(&mut self, now: Stamp) {
+        self.outbox.push(&greeting());
+        self.identity.note_request(now);
     }
 
     fn deliver(&self, event: SensorEvent) {
@@ -300,9 +324,11 @@ impl IoLoop {
         Ok(())
     }
 
+    /// Sends zero speed, then the accessories that still wait.
     fn stop(&mut self) {
         let Some(mut link) = self.link.take() else { return };
         self.outbox.push(&KobukiCommand::BaseControl(BaseControl::STOP).encode());
+        self.take_accessories();
         let start = (self.clock)();
         while !self.outbox.is_empty() && (self.clock)() - start < STOP_LIMIT_S {
             if let Err(error) = self.outbox.write(&mut *link, start) {
