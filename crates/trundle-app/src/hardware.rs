@@ -63,7 +63,7 @@ pub fn start_hardware(
     let shown = Arc::clone(&signals);
     let stop = move || {
         locked(&signals).end();
-        drivers.camera_fault()
+        drivers.report()
     };
     let body = LiveBody::start(feed, Some(commands), stop)?;
     Ok(body.with_state_display(Box::new(move |run: &RunState<'_>| locked(&shown).show(run))))

@@ -8,6 +8,7 @@
 //! | recorder | last | the recording |
 
 mod background_body;
+pub(crate) mod device_report;
 mod event_feed;
 mod event_order;
 mod live_body;
@@ -17,6 +18,7 @@ mod report;
 mod threaded_body;
 
 pub use background_body::{BackgroundBody, BodyTiming, EventOrderCounts, Lateness, TimedEvent};
+pub use device_report::DeviceReport;
 pub use event_feed::{EventFeed, EventObserver};
 pub use live_body::LiveBody;
 pub use memory_usage::MemoryUsage;

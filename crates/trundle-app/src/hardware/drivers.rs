@@ -1,5 +1,6 @@
 //! The drivers of base and camera, in their own threads.
 
+use crate::real_time::DeviceReport;
 use crate::{AppError, stop};
 use nalgebra::UnitQuaternion;
 use std::path::PathBuf;
@@ -8,11 +9,11 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 use trundle_core::{PinholeCamera, SensorEvent, Stamp, Twist2};
 use trundle_drivers::camera::camera_thread::{
-    CameraCounters, CameraThread, CameraThreadConfig, CameraThreadParts, StampMapFactory,
+    CameraThread, CameraThreadConfig, CameraThreadParts, StampMapFactory,
 };
 use trundle_drivers::camera::{CameraError, CameraInfo, DepthCamera};
 use trundle_drivers::clock::{DeviceClock, DeviceClockConfig, HostClock};
-use trundle_drivers::kobuki::{Accessories, BaseCounters, KobukiBase, KobukiBaseConfig, Versions};
+use trundle_drivers::kobuki::{Accessories, KobukiBase, KobukiBaseConfig, Versions};
 use trundle_drivers::{BaseSpec, CameraSpec};
 use trundle_runtime::CameraMount;
 
@@ -249,16 +250,11 @@ impl Drivers {
         self.base.versions()
     }
 
-    /// Bytes read and dropped so far.
+    /// What base and camera have read, dropped and lost so far.
     #[must_use]
-    pub fn counters(&self) -> (BaseCounters, CameraCounters) {
-        (self.base.counters(), self.camera.counters())
-    }
-
-    /// The last fault of the camera, in words.
-    #[must_use]
-    pub fn camera_fault(&self) -> Option<String> {
-        self.camera.last_fault()
+    pub fn report(&self) -> DeviceReport {
+        DeviceReport::of_camera(self.camera.counters(), self.camera.last_fault())
+            .with_base(self.base.counters())
     }
 }
 

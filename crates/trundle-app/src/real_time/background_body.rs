@@ -1,6 +1,6 @@
 //! A body that runs in its own threads and sends its events into the run's inbox.
 
-use super::MemoryUsage;
+use super::{DeviceReport, MemoryUsage};
 use crate::{AppError, StateDisplay};
 use serde::Serialize;
 use std::sync::Arc;
@@ -86,9 +86,9 @@ pub struct BodyTiming {
     /// Events that arrived out of order.
     #[serde(flatten)]
     pub order: EventOrderCounts,
-    /// The last fault of the camera, in words; `None` for a camera without one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub camera_fault: Option<String>,
+    /// Report of the drivers; empty for a simulated body.
+    #[serde(flatten)]
+    pub devices: DeviceReport,
     /// Resident memory of the program.
     #[serde(skip)]
     pub memory: MemoryUsage,

@@ -1,6 +1,6 @@
 //! A body of drivers with their own threads: base, camera, laser.
 
-use super::{BackgroundBody, BodyTiming, EventFeed};
+use super::{BackgroundBody, BodyTiming, DeviceReport, EventFeed};
 use crate::{AppError, StateDisplay};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -20,20 +20,20 @@ pub struct LiveBody {
     feed: EventFeed,
     is_over: Arc<AtomicBool>,
     watch: JoinHandle<()>,
-    stop_drivers: Box<dyn FnOnce() -> Option<String> + Send>,
+    stop_drivers: Box<dyn FnOnce() -> DeviceReport + Send>,
     state_display: Option<StateDisplay>,
 }
 
 impl LiveBody {
     /// The body whose drivers send events to `feed`. `commands` leads to the base; without a base, commands have no effect.
-    /// `stop_drivers` is called at the end of the run: it stops the base, joins the drivers' threads and gives the last fault of the camera.
+    /// `stop_drivers` is called at the end of the run: it stops the base, joins the drivers' threads and gives their report.
     ///
     /// # Errors
     /// When the system refuses a thread.
     pub fn start(
         feed: EventFeed,
         commands: Option<Sender<Twist2>>,
-        stop_drivers: impl FnOnce() -> Option<String> + Send + 'static,
+        stop_drivers: impl FnOnce() -> DeviceReport + Send + 'static,
     ) -> Result<Self, AppError> {
         let is_over = Arc::<AtomicBool>::default();
         let (watched, over) = (feed.clone(), Arc::clone(&is_over));
@@ -76,9 +76,9 @@ impl BackgroundBody for LiveBody {
 
     fn stop(self) -> Result<BodyTiming, AppError> {
         self.is_over.store(true, Ordering::Relaxed);
-        let camera_fault = (self.stop_drivers)();
+        let devices = (self.stop_drivers)();
         let gone = |_| AppError::Environment("the thread that watches for silence has died".to_owned());
         self.watch.join().map_err(gone)?;
-        Ok(BodyTiming { camera_fault, ..self.feed.timing() })
+        Ok(BodyTiming { devices, ..self.feed.timing() })
     }
 }

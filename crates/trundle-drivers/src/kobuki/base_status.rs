@@ -2,6 +2,7 @@
 
 use super::decoder::DecoderCounters;
 use super::protocol::{Feedback, Gains, UniqueId, Version};
+use serde::Serialize;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Facts that the base reports about itself.
@@ -45,7 +46,7 @@ impl Versions {
 }
 
 /// Events on the link to a base since the start.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct BaseCounters {
     /// Counts of bytes read and dropped.
     pub decoder: DecoderCounters,
