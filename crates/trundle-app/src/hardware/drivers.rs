@@ -120,10 +120,29 @@ impl OpenCamera {
             return Ok(());
         }
         Err(AppError::Input(format!(
-            "camera {} is a recording, expected a live camera: the robot would drive by old images; `trundle slam` and `trundle run --check` \
-             take recordings",
+            "camera {} is a recording, expected a live camera: the robot would drive by old images; `trundle convert {} OUT` makes a folder \
+             of it for `trundle slam`, and `trundle run --check` takes recordings",
+            self.spec, self.spec
+        )))
+    }
+
+    /// Refuses a live camera, whose images have no end.
+    ///
+    /// # Errors
+    /// When the camera is live.
+    pub(crate) fn require_recording(&self) -> Result<(), AppError> {
+        if !self.info().is_live {
+            return Ok(());
+        }
+        Err(AppError::Input(format!(
+            "camera {} is live, expected a recording of a camera, as kinect2-dump:FILE or realsense:FILE.db3",
             self.spec
         )))
+    }
+
+    /// The camera alone.
+    pub(crate) fn into_camera(self) -> Box<dyn DepthCamera> {
+        self.camera
     }
 
     /// The intrinsics that the robot works with.
