@@ -125,9 +125,14 @@ mod tests {
     #[test]
     fn a_recording_of_any_maker_is_a_file_for_every_kind_of_camera() {
         for kind in NativeKind::ALL {
-            for name in ["drive.db3", "drive.bag", "drive.oni", "DRIVE.ONI", "a b.Bag", "kinect.dump", "d/x.oni"]
+            for name in
+                ["drive.db3", "drive.bag", "drive.oni", "DRIVE.ONI", "a b.Bag", "kinect.dump", "d/x.oni"]
             {
-                assert_eq!(Selection::named(*kind, Some(name)), Selection::File(name.into()), "{kind}:{name}");
+                assert_eq!(
+                    Selection::named(*kind, Some(name)),
+                    Selection::File(name.into()),
+                    "{kind}:{name}"
+                );
             }
         }
     }
