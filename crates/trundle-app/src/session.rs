@@ -7,8 +7,8 @@ use crate::run_mark::{RunMark, RunMarkMessage};
 use crate::run_messages::RunMessages;
 use crate::setup::mission_text;
 use crate::{
-    AppError, BestView, FinishedRun, Progress, RecordingContent, RecordingCost, RunLog, RunRecorder, RunSetup,
-    RunState,
+    AppError, BestView, FinishedRun, Progress, RecordingContent, RecordingCost, RunLog, RunRecorder,
+    RunSetup, RunState,
 };
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -19,7 +19,6 @@ use super::probe::greeting;
 use super::protocol::{BaseControl, Feedback, KobukiCommand, Outputs};
 use super::stream_check::{StreamCheck, StreamFault};
 use crate::clock::HostClock;
-use std::io;
 use std::sync::mpsc::{Receiver, SyncSender};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;

@@ -56,7 +56,11 @@ fn every_change_has_its_melody() {
                 3 | 4 => None,
                 _ => Some(SoundSequence::CleaningEnd),
             };
-            assert_eq!(melody_of(Some(Shown { light: before, tasks_done }), now), expected, "{before} to {light}");
+            assert_eq!(
+                melody_of(Some(Shown { light: before, tasks_done }), now),
+                expected,
+                "{before} to {light}"
+            );
         }
     }
 }
