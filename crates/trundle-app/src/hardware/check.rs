@@ -2,8 +2,8 @@
 
 use super::check_log::{BaseLog, CameraLog, CheckLog, ImageNote, mean, rate_and_gap};
 use super::{Drivers, OpenCamera};
-use crate::real_time::device_report::{base_rows, camera_row};
 use crate::calibrate::{CalibratedValue, Calibration, floor_values};
+use crate::real_time::device_report::{base_rows, camera_row};
 use crate::{AppError, stop};
 use std::sync::Arc;
 use std::time::Instant;
