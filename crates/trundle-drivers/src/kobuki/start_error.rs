@@ -61,9 +61,7 @@ pub enum StartError {
         fault: StreamFault,
     },
     /// The firmware has another protocol version.
-    #[error(
-        "port {port}: the base's firmware is {firmware}, expected 1.x: update it, see {FIRMWARE_PAGE}"
-    )]
+    #[error("port {port}: the base's firmware is {firmware}, expected 1.x: update it, see {FIRMWARE_PAGE}")]
     Firmware {
         /// The port.
         port: String,
