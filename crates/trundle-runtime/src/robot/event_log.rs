@@ -6,7 +6,8 @@ use crate::operator::{PoseGuess, RunSetting};
 use crate::reason::{Reason, TransitionReason};
 use trundle_control::MotionHold;
 use trundle_core::{
-    BodyEvent, BodyEventKind, Button, GridGeometry, Invalid, MapAnnotations, Pose2, Stamp, difference_of_angles,
+    BodyEvent, BodyEventKind, Button, GridGeometry, Invalid, MapAnnotations, Pose2, Stamp,
+    difference_of_angles,
 };
 use trundle_estimation::{VisualVerdict, WheelCounts, WheelReport};
 
