@@ -98,11 +98,7 @@ impl RecordedCamera {
 }
 
 /// Refuses what has no effect on a camera, and the forms that need more than images.
-fn refuse_idle(
-    spec: &CameraSpec,
-    options: &SequenceOptions<'_>,
-    form: SequenceForm,
-) -> Result<(), AppError> {
+fn refuse_idle(spec: &CameraSpec, options: &SequenceOptions<'_>, form: SequenceForm) -> Result<(), AppError> {
     let refused = |problem: String| Err(AppError::Input(problem));
     if form != SequenceForm::TumFolder {
         return refused(format!(
@@ -140,7 +136,9 @@ impl Frames {
     fn image(&mut self, frame: &CameraFrame) -> Result<RgbdImage, String> {
         let stamp = frame.color.device_stamp;
         if self.last.is_some_and(|last| stamp <= last) {
-            return Err(format!("the frame at {stamp} s does not follow the one before, expected a later time"));
+            return Err(format!(
+                "the frame at {stamp} s does not follow the one before, expected a later time"
+            ));
         }
         let image = self.registered(stamp, frame).map_err(|problem| problem.to_string())?;
         self.last = Some(stamp);
