@@ -8,14 +8,14 @@ use crate::{console, logging};
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::AppError;
-use trundle::app::convert::{SequenceForm, convert_sequence, open_for};
+use trundle::app::convert::{ConversionInput, SequenceForm};
 use trundle::app::sequence_input::{SequenceOptions, topic_rows};
 
 /// `trundle convert`
 #[derive(Debug, Args)]
 #[command(after_help = "Example: trundle convert bag.mcap out/tum --to tum")]
 pub struct ConvertArgs {
-    /// A ROS 2 bag (folder, .mcap, .db3), a TUM RGB-D folder or a recording of trundle with images.
+    /// A ROS 2 bag (folder, .mcap, .db3), a TUM RGB-D folder, a recording of trundle with images, or for --to tum the recording of a camera: kinect2-dump:FILE, realsense:FILE.db3, stream:FILE.
     pub input: PathBuf,
     /// Folder for the result.
     #[arg(required_unless_present = "list")]
@@ -44,10 +44,10 @@ pub fn run(args: &ConvertArgs) -> Result<Outcome, AppError> {
         console::print_table(&topic_rows(&options)?);
         return Ok(Outcome::Reached);
     };
-    let input = open_for(&options, args.to)?;
+    let input = ConversionInput::open(&options, args.to)?;
     let folder = logging::output_folder(out)?;
     let display = console::StepDisplay::new(args.common.quiet);
-    let converted = convert_sequence(&input, args.to, &folder, &display)?;
+    let converted = input.convert(args.to, &folder, &display)?;
     let place = folder.commit()?;
     if !args.common.quiet {
         console::print(&format!("{converted}: {}", place.display()));

@@ -1,7 +1,7 @@
-//! Events of the body over a run: losses of devices, wheel drops, the battery.
+//! Events of the body over a run: losses of devices, wheel drops, the battery, buttons, the light of a charging station.
 
 use std::collections::BTreeMap;
-use trundle_core::{Battery, BodyEventKind, Device};
+use trundle_core::{Battery, BodyEventKind, Button, Device};
 use trundle_io::Summary;
 
 /// Events of the body over a run.
@@ -17,6 +17,12 @@ pub struct BodyLog {
     pub silences: usize,
     /// First and newest state of the battery.
     pub battery: Option<(Battery, Battery)>,
+    /// Number of presses of each button.
+    pub button_presses: BTreeMap<u8, usize>,
+    /// Number of times that the light of a charging station came into view.
+    pub station_sightings: usize,
+    /// Whether the light of a charging station is in view.
+    is_station_in_view: bool,
 }
 
 impl BodyLog {
@@ -29,6 +35,13 @@ impl BodyLog {
             BodyEventKind::Silence => self.silences += 1,
             BodyEventKind::Battery(newest) => {
                 self.battery = Some((self.battery.map_or(newest, |(first, _)| first), newest));
+            }
+            BodyEventKind::Button(Button { index, pressed: true }) => {
+                *self.button_presses.entry(index).or_default() += 1;
+            }
+            BodyEventKind::DockInfrared(light) => {
+                let was_in_view = std::mem::replace(&mut self.is_station_in_view, light.is_any());
+                self.station_sightings += usize::from(light.is_any() && !was_in_view);
             }
             _ => {}
         }
@@ -49,7 +62,16 @@ impl BodyLog {
                 .iter()
                 .map(|(device, count)| row(format!("losses of the {device}"), count.to_string())),
         );
-        for (name, count) in [("wheel drops", self.wheel_drops), ("over-currents", self.over_currents)] {
+        rows.extend(
+            self.button_presses
+                .iter()
+                .map(|(index, count)| row(format!("presses of button B{index}"), count.to_string())),
+        );
+        for (name, count) in [
+            ("wheel drops", self.wheel_drops),
+            ("over-currents", self.over_currents),
+            ("sightings of the station's light", self.station_sightings),
+        ] {
             if count > 0 {
                 rows.push(row(name.to_owned(), count.to_string()));
             }
@@ -65,10 +87,15 @@ impl BodyLog {
         if !self.losses.is_empty() {
             summary.set("device_losses", &self.losses);
         }
+        if !self.button_presses.is_empty() {
+            let name = |(index, count): (&u8, &usize)| (format!("B{index}"), *count);
+            summary.set("button_presses", self.button_presses.iter().map(name).collect::<BTreeMap<_, _>>());
+        }
         for (name, count) in [
             ("wheel_drops", self.wheel_drops),
             ("over_currents", self.over_currents),
             ("silences", self.silences),
+            ("station_sightings", self.station_sightings),
         ] {
             if count > 0 {
                 summary.set(name, count);
@@ -85,7 +112,7 @@ fn battery_text(battery: &Battery) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trundle_core::{Link, PerWheel, PowerSource};
+    use trundle_core::{DockInfrared, Link, PerWheel, PowerSource};
 
     #[test]
     fn losses_are_counted_and_returns_are_not() {
@@ -107,5 +134,29 @@ mod tests {
         log.on_event(battery(15.5, None));
         let rows: Vec<String> = log.rows().iter().map(|row| row.join(": ")).collect();
         assert_eq!(rows, ["battery: 16.0 V, 80 % -> 15.5 V", "losses of the camera: 2", "wheel drops: 2"]);
+    }
+
+    #[test]
+    fn presses_are_counted_by_button_and_sightings_of_the_station_by_their_beginnings() {
+        let mut log = BodyLog::default();
+        for (index, pressed) in [(1, true), (1, false), (2, true), (1, true), (1, false)] {
+            log.on_event(BodyEventKind::Button(Button { index, pressed }));
+        }
+        let (dark, mut light) = (DockInfrared::default(), DockInfrared::default());
+        light.left.far_left = true;
+        let mut other = light;
+        other.center.far_center = true;
+        for light in [dark, light, other, light, dark, dark, other] {
+            log.on_event(BodyEventKind::DockInfrared(light));
+        }
+        let rows: Vec<String> = log.rows().iter().map(|row| row.join(": ")).collect();
+        assert_eq!(
+            rows,
+            ["presses of button B1: 2", "presses of button B2: 1", "sightings of the station's light: 2"]
+        );
+        let mut summary = Summary::new("run");
+        log.add_to(&mut summary);
+        assert_eq!(summary.get("button_presses"), Some(&serde_json::json!({ "B1": 2, "B2": 1 })));
+        assert_eq!(summary.get("station_sightings"), Some(&serde_json::json!(2)));
     }
 }

@@ -1,4 +1,9 @@
-//! Conversion of RGB-D images with their poses, and of a robot's other sensors: ROS bag, TUM folder or recording into another of these forms.
+//! Conversion of RGB-D images with their poses, and of a robot's other sensors: ROS bag, TUM folder or recording into another of these
+//! forms, and the recording of a camera into a TUM folder.
+
+mod recorded_camera;
+
+pub use recorded_camera::RecordedCamera;
 
 mod bag;
 mod images;
@@ -41,6 +46,43 @@ impl std::str::FromStr for SequenceForm {
 const RECORDING_FILE: &str = "recording.mcap";
 /// Rate of the images if the input gives no rate \[Hz\]; the rate of the simulated camera. Source: ours.
 const DEFAULT_RATE_HZ: f64 = 15.0;
+
+/// Input of a conversion.
+pub enum ConversionInput {
+    /// A ROS bag, a TUM folder or a recording of trundle.
+    Sequence(Box<SequenceInput>),
+    /// The recording of a camera.
+    Camera(RecordedCamera),
+}
+
+impl ConversionInput {
+    /// Opens what `options` name: the recording of a camera, as `kinect2-dump:FILE`, or a sequence.
+    ///
+    /// # Errors
+    /// As [`RecordedCamera::open`] and [`open_for`].
+    pub fn open(options: &SequenceOptions<'_>, form: SequenceForm) -> Result<Self, AppError> {
+        match RecordedCamera::named_by(options) {
+            Some(spec) => Ok(Self::Camera(RecordedCamera::open(&spec, options, form)?)),
+            None => Ok(Self::Sequence(Box::new(open_for(options, form)?))),
+        }
+    }
+
+    /// Writes the images into `folder`.
+    ///
+    /// # Errors
+    /// As [`RecordedCamera::to_tum`] and [`convert_sequence`].
+    pub fn convert(
+        self,
+        form: SequenceForm,
+        folder: &OutputFolder,
+        progress: &dyn StepProgress,
+    ) -> Result<Converted, AppError> {
+        match self {
+            Self::Sequence(input) => convert_sequence(&input, form, folder, progress),
+            Self::Camera(camera) => camera.to_tum(folder, progress),
+        }
+    }
+}
 
 /// Opens a sequence for its conversion into `form`. A recording needs the camera's mount, which the floor in the images shows where the
 /// input has none.

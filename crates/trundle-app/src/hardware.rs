@@ -4,13 +4,16 @@ mod check;
 mod check_log;
 mod device_list;
 mod drivers;
+mod state_signals;
 
 pub use check::{CheckRequest, HardwareReport, check_hardware};
 pub use device_list::{device_rows, udev_rules};
 pub use drivers::{Drivers, GyroOrigin, IntrinsicsSource, OpenCamera};
 
-use crate::AppError;
 use crate::real_time::{EventFeed, EventObserver, LiveBody, TimedEvent};
+use crate::{AppError, RunState};
+use state_signals::StateSignals;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use trundle_core::{PinholeCamera, SensorEvent};
 use trundle_drivers::BaseSpec;
@@ -56,5 +59,16 @@ pub fn start_hardware(
     };
     let drivers = Drivers::start(base, camera, output, origin, send)?;
     let commands = drivers.commands();
-    LiveBody::start(feed, Some(commands), move || drivers.camera_fault())
+    let signals = Arc::new(Mutex::new(StateSignals::new(drivers.accessories())));
+    let shown = Arc::clone(&signals);
+    let stop = move || {
+        locked(&signals).end();
+        drivers.report()
+    };
+    let body = LiveBody::start(feed, Some(commands), stop)?;
+    Ok(body.with_state_display(Box::new(move |run: &RunState<'_>| locked(&shown).show(run))))
+}
+
+fn locked(signals: &Mutex<StateSignals>) -> MutexGuard<'_, StateSignals> {
+    signals.lock().unwrap_or_else(PoisonError::into_inner)
 }

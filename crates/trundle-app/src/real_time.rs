@@ -8,6 +8,7 @@
 //! | recorder | last | the recording |
 
 mod background_body;
+pub(crate) mod device_report;
 mod event_feed;
 mod event_order;
 mod live_body;
@@ -17,6 +18,7 @@ mod report;
 mod threaded_body;
 
 pub use background_body::{BackgroundBody, BodyTiming, EventOrderCounts, Lateness, TimedEvent};
+pub use device_report::DeviceReport;
 pub use event_feed::{EventFeed, EventObserver};
 pub use live_body::LiveBody;
 pub use memory_usage::MemoryUsage;
@@ -66,9 +68,9 @@ pub fn run_in_real_time<B: BackgroundBody>(
         .map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
     pool.install(|| {
         let mut live = ThreadedBody::start(LoopTimerConfig::default(), at(WORKER_NICENESS))?;
-        let body =
+        let mut body =
             start_body(live.event_sender(), ThreadPlacement { core: outside, ..ThreadPlacement::default() })?;
-        live.connect(body.commands(), body.contacts());
+        live.connect(&mut body);
         let before = thread_time().unwrap_or_default();
         let result = run_on_body(setup, &mut live, recorder, log, front_end);
         let control = thread_time().unwrap_or_default().saturating_sub(before);

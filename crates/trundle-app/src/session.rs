@@ -7,13 +7,16 @@ use crate::run_mark::{RunMark, RunMarkMessage};
 use crate::run_messages::RunMessages;
 use crate::setup::mission_text;
 use crate::{
-    AppError, BestView, FinishedRun, Progress, RecordingContent, RecordingCost, RunLog, RunRecorder, RunSetup,
+    AppError, BestView, FinishedRun, Progress, RecordingContent, RecordingCost, RunLog, RunRecorder,
+    RunSetup, RunState,
 };
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::{Stamp, Twist2};
 use trundle_io::EncodedEvent;
-use trundle_runtime::{Answer, DriveState, LazyImage, Reason, Robot, Stage, StepReport, TaskRecord, Worker};
+use trundle_runtime::{
+    Answer, DriveState, LazyImage, Reason, Robot, Stage, StepReport, TaskEnd, TaskRecord, Worker,
+};
 
 /// A run in progress: feeds the robot and records each input and output.
 pub struct RunSession<'s> {
@@ -28,6 +31,8 @@ pub struct RunSession<'s> {
     operator: Option<OperatorLink>,
     /// Tasks of missions that the operator replaced.
     earlier_tasks: Vec<TaskRecord>,
+    /// Tasks of the present mission that are done, as last known.
+    tasks_done: usize,
     start: Instant,
     is_interrupted: bool,
     /// Content of the present recording.
@@ -79,6 +84,7 @@ impl<'s> RunSession<'s> {
             progress,
             operator,
             earlier_tasks: Vec::new(),
+            tasks_done: 0,
             start,
             is_interrupted: false,
             recorded: setup.recording,
@@ -125,6 +131,7 @@ impl<'s> RunSession<'s> {
         }
         self.record(stamp, &report);
         self.log.on_report(stamp, &report);
+        self.show_state(&report.state, report.finished, body);
         if let Some(link) = &mut self.operator {
             link.publish(stamp, &self.robot, &report);
         }
@@ -168,6 +175,16 @@ impl<'s> RunSession<'s> {
         self.messages = RunMessages::default();
     }
 
+    /// Shows the state of the run on the body.
+    fn show_state(&mut self, state: &DriveState, is_finished: bool, body: &mut dyn EncodedBody) {
+        // The records are not at hand while a decision job runs.
+        if let Some(mission) = self.robot.mission_progress() {
+            self.tasks_done = mission.ended.iter().filter(|record| record.end == TaskEnd::Done).count();
+        }
+        let (is_held, tasks_done) = (self.robot.hold().is_some(), self.tasks_done);
+        body.show_state(&RunState { state, is_finished, is_held, tasks_done });
+    }
+
     /// Records the body's contacts, if it counts them.
     fn record_contacts(&mut self, body: &dyn EncodedBody) {
         if let contacts @ Some(count) = body.true_contacts()
@@ -181,6 +198,7 @@ impl<'s> RunSession<'s> {
     /// The user ends the run: the robot stops.
     fn interrupt(&mut self, body: &mut dyn EncodedBody) -> Result<bool, AppError> {
         body.send_command(Twist2::ZERO)?;
+        self.show_state(&DriveState::Stopped { reason: Reason::Interrupted }, true, body);
         self.record_mark(RunMark::Interrupted);
         self.is_interrupted = true;
         Ok(true)

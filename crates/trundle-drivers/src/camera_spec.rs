@@ -35,8 +35,6 @@ pub enum CameraSpec {
 const KINDS: &str = "realsense, freenect (Kinect v1), orbbec, openni2, kinect2 (needs the feature kinect2-usb), stream:PATH, \
      folder:PATH, kinect2-dump:FILE; a serial number or \
      recording may follow, as realsense:FILE.db3";
-/// Endings of recordings of RealSense cameras. Source: librealsense's recorder.
-const RECORDING_ENDINGS: [&str; 2] = [".db3", ".bag"];
 
 impl CameraSpec {
     /// Opens the camera; the head of a stream is waited for at most `timeout`. `program` has a command [`SERVE_COMMAND`]: cameras whose
@@ -91,16 +89,7 @@ impl CameraSpec {
 
     fn native(kind: &str, which: Option<&str>) -> Option<Self> {
         let kind = NativeKind::ALL.iter().copied().find(|known| known.to_string() == kind)?;
-        let is_file =
-            |which: &str| which.contains('/') || RECORDING_ENDINGS.iter().any(|end| which.ends_with(end));
-        Some(Self::Native(
-            kind,
-            match which {
-                None => Selection::First,
-                Some(file) if is_file(file) => Selection::File(file.into()),
-                Some(serial) => Selection::Serial(serial.to_owned()),
-            },
-        ))
+        Some(Self::Native(kind, Selection::named(kind, which)))
     }
 }
 
@@ -156,6 +145,8 @@ mod tests {
         }
         let file = Selection::File("drive.db3".into());
         assert_eq!("realsense:drive.db3".parse(), Ok(CameraSpec::Native(NativeKind::RealSense, file)));
+        let recording = Selection::File("drive.oni".into());
+        assert_eq!("openni2:drive.oni".parse(), Ok(CameraSpec::Native(NativeKind::OpenNi2, recording)));
         for text in ["", "stream", "stream:", "folder:", "webcam", "realsense:", "kinect2-dump"] {
             assert!(
                 text.parse::<CameraSpec>().unwrap_err().starts_with(&format!("no camera '{text}', expected"))

@@ -91,6 +91,17 @@ impl DocksOutcome {
         self.trials.iter().map(|(_, trial)| trial).filter(|trial| trial.is_docked())
     }
 
+    /// Number of docks within the limits, without contact.
+    fn within_limits(&self) -> usize {
+        let is_good =
+            |trial: &&DockTrial| trial.contacts == 0 && trial.lateral_error().abs() <= MAX_LATERAL_ERROR_M;
+        self.docked().filter(is_good).count()
+    }
+
+    fn contacts(&self) -> u32 {
+        self.trials.iter().map(|(_, trial)| trial.contacts).sum()
+    }
+
     fn rows(&self) -> Vec<Vec<String>> {
         self.trials.iter().map(|(start, trial)| row(start, trial)).collect()
     }
@@ -116,9 +127,7 @@ fn row(start: &Pose2, trial: &DockTrial) -> Vec<String> {
 
 impl ExperimentReport for DocksOutcome {
     fn is_success(&self) -> bool {
-        let is_good =
-            |trial: &DockTrial| trial.contacts == 0 && trial.lateral_error().abs() <= MAX_LATERAL_ERROR_M;
-        !self.trials.is_empty() && self.docked().filter(|trial| is_good(trial)).count() == self.trials.len()
+        !self.trials.is_empty() && self.within_limits() == self.trials.len()
     }
 
     fn table(&self) -> Vec<Vec<String>> {
@@ -128,11 +137,11 @@ impl ExperimentReport for DocksOutcome {
     fn verdict(&self) -> String {
         let (docked, all) = (self.docked().count(), self.trials.len());
         let (across, heading) = (self.rms(DockTrial::lateral_error), self.rms(DockTrial::heading_error));
-        let contacts: u32 = self.trials.iter().map(|(_, trial)| trial.contacts).sum();
         format!(
-            "{docked} of {all} docks; at contact {:.1} mm across and {:.2} deg (root mean square); {contacts} contacts.",
+            "{docked} of {all} docks; at contact {:.1} mm across and {:.2} deg (root mean square); {} contacts.",
             across * 1e3,
-            heading.to_degrees()
+            heading.to_degrees(),
+            self.contacts()
         )
     }
 
@@ -152,6 +161,8 @@ impl ExperimentReport for DocksOutcome {
             .set("success", self.is_success())
             .set("docks", self.trials.len())
             .set("docked", self.docked().count())
+            .set("within_limits", self.within_limits())
+            .set("contacts", self.contacts())
             .set("across_rms_m", self.rms(DockTrial::lateral_error))
             .set("heading_rms_rad", self.rms(DockTrial::heading_error));
         folder.write("docks.csv", table_csv(header, self.trials.iter().map(numbers)).as_bytes())?;

@@ -221,6 +221,7 @@ impl Robot {
     fn on_body(&mut self, event: &BodyEvent, report: &mut StepReport) {
         let before = self.latest.body.hold(self.range_sensor.source);
         self.latest.body.update(event.kind);
+        event_log::body(event);
         if self.latest.body.is_lifted() {
             self.latest.pose_monitor.add_lift(event.stamp);
         }

@@ -128,9 +128,23 @@ fn a_goal_is_reached_over_a_serial_line_and_a_camera_stream() {
     let summary = robot.summary();
     assert_eq!((summary["command"].as_str(), summary["success"].as_bool()), (Some("run"), Some(true)));
     assert_eq!(summary["battery_end"]["voltage_v"], 16.5);
+    let world = &summary["wall_clock"]["real_time"]["world"];
+    assert!(world["base_link"]["decoder"]["packets"].as_u64() > Some(50), "{world}");
+    assert!(world["base_link"]["link_losses"].is_u64() && world["camera_frames"]["lost"].is_u64(), "{world}");
+    assert!(
+        text(&output).contains("base: bytes skipped, packets with a wrong checksum"),
+        "{}",
+        text(&output)
+    );
     let truth = robot.stop();
     assert!((first_number(&truth, "true pose from the start") - 0.6).abs() < 0.03, "{truth}");
     assert_eq!(first_number(&truth, "true contacts"), 0.0);
+    let row = |name: &str| truth.lines().find_map(|line| line.trim().strip_prefix(name)).unwrap().trim();
+    assert_eq!(
+        (row("first light"), row("melodies received")),
+        ("off", "cleaning start, cleaning end"),
+        "{truth}"
+    );
     assert!(!folder.path().join("out/groundtruth.txt").exists(), "a real robot knows no truth");
     replayed_alike(folder.path());
 }

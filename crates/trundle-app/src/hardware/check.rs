@@ -3,6 +3,7 @@
 use super::check_log::{BaseLog, CameraLog, CheckLog, ImageNote, mean, rate_and_gap};
 use super::{Drivers, OpenCamera};
 use crate::calibrate::{CalibratedValue, Calibration, floor_values};
+use crate::real_time::device_report::{base_rows, camera_row};
 use crate::{AppError, stop};
 use std::sync::Arc;
 use std::time::Instant;
@@ -80,8 +81,7 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
     while start.elapsed().as_secs_f64() < seconds && !is_over() {
         std::thread::sleep(stop::POLL_PERIOD);
     }
-    let (versions, (base_counters, camera_counters)) = (drivers.versions(), drivers.counters());
-    let fault = drivers.camera_fault();
+    let (versions, devices) = (drivers.versions(), drivers.report());
     drop(drivers);
     let (base_log, camera_log) = (log.base(), log.camera());
     let mut report = HardwareReport::default();
@@ -94,17 +94,12 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
     );
     report.problems.extend(versions.firmware_fault());
     report.check_base(&base_log);
-    report.row("bytes skipped, packets with a wrong checksum", {
-        let decoder = base_counters.decoder;
-        format!("{}, {}", decoder.skipped_bytes, decoder.wrong_checksum)
-    });
+    report.rows.extend(devices.base.iter().flat_map(base_rows));
     let size = format!("{} x {} px", info.color.camera.width(), info.color.camera.height());
     report.row("camera", format!("{}, {size}, {:.0} Hz", info.name, info.color.rate_hz));
     report.check_camera(&camera_log, info.color.rate_hz);
-    report.row("images dropped, broken, stuck", {
-        format!("{}, {}, {}", camera_counters.dropped, camera_counters.broken, camera_counters.stuck)
-    });
-    report.problems.extend(fault.map(|fault| format!("camera: {fault}")));
+    report.rows.extend(devices.camera.iter().map(camera_row));
+    report.problems.extend(devices.camera_fault.map(|fault| format!("camera: {fault}")));
     report.check_wheels(&base_log);
     report.check_floor(&camera_log, robot);
     report.notes.extend(base_log.body.events.iter().map(|event| format!("event at {event}")));

@@ -13,6 +13,23 @@ const REALSENSE_UDEV_RULE: &str = "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"8086\",
 /// Udev rule of Orbbec's cameras, by the vendor's number. Source: the USB ID database.
 const ORBBEC_UDEV_RULE: &str =
     "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"2bc5\", MODE=\"0660\", GROUP=\"plugdev\", TAG+=\"uaccess\"";
+/// Udev rule of the Xtion and of other cameras with a PrimeSense sensor, by the vendor's number. Source: the USB ID database.
+const XTION_UDEV_RULE: &str =
+    "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"1d27\", MODE=\"0660\", GROUP=\"plugdev\", TAG+=\"uaccess\"";
+/// Product numbers of the Kinect v1 for the Xbox and for Windows: motor, audio, camera each. Newer models reach the motor through the audio
+/// device. Source: libfreenect's `51-kinect.rules`.
+const KINECT1_PRODUCT_IDS: [&str; 6] = ["02b0", "02ad", "02ae", "02c2", "02be", "02bf"];
+
+/// Udev rules of the Kinect v1, whose vendor Microsoft has other devices as well.
+fn kinect1_udev_rules() -> String {
+    let rule = |product: &str| {
+        format!(
+            "SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"045e\", ATTR{{idProduct}}==\"{product}\", MODE=\"0660\", GROUP=\"plugdev\", \
+             TAG+=\"uaccess\""
+        )
+    };
+    KINECT1_PRODUCT_IDS.map(rule).join("\n")
+}
 
 /// The udev rules that give the devices their names and rights.
 #[must_use]
@@ -22,9 +39,12 @@ pub fn udev_rules() -> String {
          # sudo udevadm control --reload && sudo udevadm trigger\n\
          # Kobuki: {KOBUKI_UDEV_PORT}\n{KOBUKI_UDEV_RULE}\n\
          # Depth cameras: members of the group plugdev may open them\n\
+         # Kinect v1\n{}\n\
          # Kinect V2\n{KINECT2_UDEV_RULE}\n\
          # RealSense\n{REALSENSE_UDEV_RULE}\n\
-         # Orbbec\n{ORBBEC_UDEV_RULE}"
+         # Orbbec\n{ORBBEC_UDEV_RULE}\n\
+         # Xtion\n{XTION_UDEV_RULE}",
+        kinect1_udev_rules()
     )
 }
 
@@ -96,6 +116,9 @@ mod tests {
             "SYMLINK+=\"kobuki\"",
             "\"045e\", ATTR{idProduct}==\"02c4\"",
             "\"045e\", ATTR{idProduct}==\"02d8\"",
+            "\"045e\", ATTR{idProduct}==\"02ae\"",
+            "\"045e\", ATTR{idProduct}==\"02bf\"",
+            "\"1d27\"",
             "\"8086\", ATTR{product}==\"*RealSense*\"",
             "\"2bc5\"",
         ] {

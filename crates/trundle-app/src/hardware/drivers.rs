@@ -1,5 +1,6 @@
 //! The drivers of base and camera, in their own threads.
 
+use crate::real_time::DeviceReport;
 use crate::{AppError, stop};
 use nalgebra::UnitQuaternion;
 use std::path::PathBuf;
@@ -8,11 +9,11 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 use trundle_core::{PinholeCamera, SensorEvent, Stamp, Twist2};
 use trundle_drivers::camera::camera_thread::{
-    CameraCounters, CameraThread, CameraThreadConfig, CameraThreadParts, StampMapFactory,
+    CameraThread, CameraThreadConfig, CameraThreadParts, StampMapFactory,
 };
 use trundle_drivers::camera::{CameraError, CameraInfo, DepthCamera};
 use trundle_drivers::clock::{DeviceClock, DeviceClockConfig, HostClock};
-use trundle_drivers::kobuki::{BaseCounters, KobukiBase, KobukiBaseConfig, Versions};
+use trundle_drivers::kobuki::{Accessories, KobukiBase, KobukiBaseConfig, Versions};
 use trundle_drivers::{BaseSpec, CameraSpec};
 use trundle_runtime::CameraMount;
 
@@ -119,10 +120,29 @@ impl OpenCamera {
             return Ok(());
         }
         Err(AppError::Input(format!(
-            "camera {} is a recording, expected a live camera: the robot would drive by old images; `trundle slam` and `trundle run --check` \
-             take recordings",
+            "camera {} is a recording, expected a live camera: the robot would drive by old images; `trundle convert {} OUT` makes a folder \
+             of it for `trundle slam`, and `trundle run --check` takes recordings",
+            self.spec, self.spec
+        )))
+    }
+
+    /// Refuses a live camera, whose images have no end.
+    ///
+    /// # Errors
+    /// When the camera is live.
+    pub(crate) fn require_recording(&self) -> Result<(), AppError> {
+        if !self.info().is_live {
+            return Ok(());
+        }
+        Err(AppError::Input(format!(
+            "camera {} is live, expected a recording of a camera, as kinect2-dump:FILE or realsense:FILE.db3",
             self.spec
         )))
+    }
+
+    /// The camera alone.
+    pub(crate) fn into_camera(self) -> Box<dyn DepthCamera> {
+        self.camera
     }
 
     /// The intrinsics that the robot works with.
@@ -237,22 +257,23 @@ impl Drivers {
         self.base.commands()
     }
 
+    /// Lights and sounds of the base.
+    #[must_use]
+    pub fn accessories(&self) -> Accessories {
+        self.base.accessories()
+    }
+
     /// Versions of the base.
     #[must_use]
     pub fn versions(&self) -> Versions {
         self.base.versions()
     }
 
-    /// Bytes read and dropped so far.
+    /// What base and camera have read, dropped and lost so far.
     #[must_use]
-    pub fn counters(&self) -> (BaseCounters, CameraCounters) {
-        (self.base.counters(), self.camera.counters())
-    }
-
-    /// The last fault of the camera, in words.
-    #[must_use]
-    pub fn camera_fault(&self) -> Option<String> {
-        self.camera.last_fault()
+    pub fn report(&self) -> DeviceReport {
+        DeviceReport::of_camera(self.camera.counters(), self.camera.last_fault())
+            .with_base(self.base.counters())
     }
 }
 

@@ -1,7 +1,7 @@
 //! A body that runs in its own threads and sends its events into the run's inbox.
 
-use super::MemoryUsage;
-use crate::AppError;
+use super::{DeviceReport, MemoryUsage};
+use crate::{AppError, StateDisplay};
 use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
@@ -33,6 +33,11 @@ pub trait BackgroundBody {
 
     /// The count of separate contacts, in truth; `None` if only the bumper reports contacts.
     fn contacts(&self) -> Option<Arc<AtomicU32>>;
+
+    /// The body's lights and sounds; `None` (the default) for a body without them.
+    fn state_display(&mut self) -> Option<StateDisplay> {
+        None
+    }
 
     /// Ends the body's threads.
     ///
@@ -81,9 +86,9 @@ pub struct BodyTiming {
     /// Events that arrived out of order.
     #[serde(flatten)]
     pub order: EventOrderCounts,
-    /// The last fault of the camera, in words; `None` for a camera without one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub camera_fault: Option<String>,
+    /// Report of the drivers; empty for a simulated body.
+    #[serde(flatten)]
+    pub devices: DeviceReport,
     /// Resident memory of the program.
     #[serde(skip)]
     pub memory: MemoryUsage,

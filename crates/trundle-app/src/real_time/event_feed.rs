@@ -1,7 +1,7 @@
 //! The path of events from drivers into a run.
 
 use super::event_order::{EventOrder, MAX_HOLD_S, Placed};
-use super::{BodyTiming, EventOrderCounts, MemoryUsage, TimedEvent};
+use super::{BodyTiming, DeviceReport, EventOrderCounts, MemoryUsage, TimedEvent};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use trundle_core::{BodyEvent, BodyEventKind, SensorEvent, Stamp};
@@ -103,7 +103,7 @@ impl EventFeed {
             images_not_taken: state.images_refused,
             images: state.images,
             order: state.order.counts(),
-            camera_fault: None,
+            devices: DeviceReport::default(),
             image_age_median_ms: age(0.5),
             image_age_p99_ms: age(0.99),
             memory: state.memory.clone(),

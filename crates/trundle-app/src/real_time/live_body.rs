@@ -1,7 +1,7 @@
 //! A body of drivers with their own threads: base, camera, laser.
 
-use super::{BackgroundBody, BodyTiming, EventFeed};
-use crate::AppError;
+use super::{BackgroundBody, BodyTiming, DeviceReport, EventFeed};
+use crate::{AppError, StateDisplay};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Sender, channel};
@@ -20,19 +20,20 @@ pub struct LiveBody {
     feed: EventFeed,
     is_over: Arc<AtomicBool>,
     watch: JoinHandle<()>,
-    stop_drivers: Box<dyn FnOnce() -> Option<String> + Send>,
+    stop_drivers: Box<dyn FnOnce() -> DeviceReport + Send>,
+    state_display: Option<StateDisplay>,
 }
 
 impl LiveBody {
     /// The body whose drivers send events to `feed`. `commands` leads to the base; without a base, commands have no effect.
-    /// `stop_drivers` is called at the end of the run: it stops the base, joins the drivers' threads and gives the last fault of the camera.
+    /// `stop_drivers` is called at the end of the run: it stops the base, joins the drivers' threads and gives their report.
     ///
     /// # Errors
     /// When the system refuses a thread.
     pub fn start(
         feed: EventFeed,
         commands: Option<Sender<Twist2>>,
-        stop_drivers: impl FnOnce() -> Option<String> + Send + 'static,
+        stop_drivers: impl FnOnce() -> DeviceReport + Send + 'static,
     ) -> Result<Self, AppError> {
         let is_over = Arc::<AtomicBool>::default();
         let (watched, over) = (feed.clone(), Arc::clone(&is_over));
@@ -49,7 +50,14 @@ impl LiveBody {
             .spawn(watch)
             .map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
         let commands = commands.unwrap_or_else(|| channel().0);
-        Ok(Self { commands, feed, is_over, watch, stop_drivers: Box::new(stop_drivers) })
+        let stop_drivers = Box::new(stop_drivers);
+        Ok(Self { commands, feed, is_over, watch, stop_drivers, state_display: None })
+    }
+
+    /// The body with lights and sounds that show the state of the run.
+    #[must_use]
+    pub fn with_state_display(self, display: StateDisplay) -> Self {
+        Self { state_display: Some(display), ..self }
     }
 }
 
@@ -62,11 +70,15 @@ impl BackgroundBody for LiveBody {
         None
     }
 
+    fn state_display(&mut self) -> Option<StateDisplay> {
+        self.state_display.take()
+    }
+
     fn stop(self) -> Result<BodyTiming, AppError> {
         self.is_over.store(true, Ordering::Relaxed);
-        let camera_fault = (self.stop_drivers)();
+        let devices = (self.stop_drivers)();
         let gone = |_| AppError::Environment("the thread that watches for silence has died".to_owned());
         self.watch.join().map_err(gone)?;
-        Ok(BodyTiming { camera_fault, ..self.feed.timing() })
+        Ok(BodyTiming { devices, ..self.feed.timing() })
     }
 }

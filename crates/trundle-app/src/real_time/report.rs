@@ -102,7 +102,7 @@ impl RealTimeReport {
         let order = &body.order;
         let order = format!("{}, {}", order.reordered, order.late);
         rows.push(row("events put in order, too late".to_owned(), order));
-        rows.extend(body.camera_fault.clone().map(|fault| row("last fault of the camera".to_owned(), fault)));
+        rows.extend(body.devices.rows());
         let half = self.memory.samples.last().map_or(0.0, |(time, _)| time / 2.0);
         if let Some(growth) = self.memory.growth_mb_an_hour(half).filter(|_| half >= MIN_MEMORY_HALF_S) {
             rows.push(row("growth of memory in the second half".to_owned(), format!("{growth:.1} MB/h")));

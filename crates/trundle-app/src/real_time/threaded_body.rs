@@ -1,7 +1,7 @@
 //! The body of a real-time run: it joins the control thread with the threads of the sensors and the workers.
 
-use super::{BodyTiming, QueueLength, RealTimeReport, ThreadLoad, TimedEvent};
-use crate::{AppError, EncodedBody, FinishedRun, RunInput};
+use super::{BackgroundBody, BodyTiming, QueueLength, RealTimeReport, ThreadLoad, TimedEvent};
+use crate::{AppError, EncodedBody, FinishedRun, RunInput, RunState, StateDisplay};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -29,6 +29,7 @@ pub struct ThreadedBody {
     costs: Vec<ThreadLoad>,
     /// Number of separate contacts of the true robot, counted by the simulator; `None` on a real robot.
     contacts: Option<Arc<AtomicU32>>,
+    state_display: Option<StateDisplay>,
 }
 
 /// Largest number of events that wait for the control thread: those of some seconds. Further events are refused. Source: ours.
@@ -55,6 +56,7 @@ impl ThreadedBody {
             waits: BTreeMap::new(),
             costs: Vec::new(),
             contacts: None,
+            state_display: None,
         })
     }
 
@@ -63,10 +65,12 @@ impl ThreadedBody {
         self.inbox.sender()
     }
 
-    /// From now on, sends commands to `commands` and reads the number of contacts from `contacts`, if a simulator counts them.
-    pub fn connect(&mut self, commands: Sender<Twist2>, contacts: Option<Arc<AtomicU32>>) {
-        self.commands = Some(commands);
-        self.contacts = contacts;
+    /// From now on, sends commands to `body`, shows the state of the run by its lights and sounds, and reads the number of contacts, if a
+    /// simulator counts them.
+    pub fn connect(&mut self, body: &mut impl BackgroundBody) {
+        self.commands = Some(body.commands());
+        self.contacts = body.contacts();
+        self.state_display = body.state_display();
     }
 
     fn wait_for_input(&mut self) -> Option<RunInput> {
@@ -142,6 +146,12 @@ impl EncodedBody for ThreadedBody {
         let answer = self.inbox.next_answer(worker, BODY_TIMEOUT)?;
         self.on_answer(worker);
         Some(answer)
+    }
+
+    fn show_state(&mut self, run: &RunState<'_>) {
+        if let Some(display) = &mut self.state_display {
+            display(run);
+        }
     }
 
     fn true_contacts(&self) -> Option<u32> {

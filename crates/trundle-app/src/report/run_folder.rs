@@ -100,7 +100,7 @@ fn report(setup: &RunSetup, run: &FinishedRun, numbers: &RunNumbers) -> RunRepor
             .chain([speed_chart(run)])
             .collect(),
         figures: Vec::new(),
-        tables: vec![table(numbers)],
+        tables: vec![table(run, numbers)],
         states: states(&run.log),
     }
 }
@@ -145,9 +145,9 @@ fn cards(numbers: &RunNumbers) -> Vec<Card> {
     cards
 }
 
-fn table(numbers: &RunNumbers) -> Table {
+fn table(run: &FinishedRun, numbers: &RunNumbers) -> Table {
     let empty = Table::new("The run", ["what", "value"]);
-    numbers.run_rows().into_iter().fold(empty, Table::row)
+    numbers.run_rows().into_iter().chain(run.log.body.rows()).fold(empty, Table::row)
 }
 
 /// Position error of the estimate against truth, over time.

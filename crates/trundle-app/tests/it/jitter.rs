@@ -4,7 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::{Duration, Instant};
-use trundle_app::real_time::{EventFeed, EventOrderCounts, LiveBody, RealTimeReport, run_in_real_time};
+use trundle_app::real_time::{
+    DeviceReport, EventFeed, EventOrderCounts, LiveBody, RealTimeReport, run_in_real_time,
+};
 use trundle_app::{FinishedRun, Progress, RunLog, RunSetup};
 use trundle_core::{DifferentialDrive, GyroRate, SensorEvent, Stamp, WheelTicks};
 use trundle_io::{EncodedEvent, OutputFolder, RecordedMessage, RecordingReader};
@@ -80,7 +82,7 @@ fn run(jitter: i64, folder: &Path) -> (FinishedRun, RealTimeReport, Vec<Stamp>) 
         });
         LiveBody::start(feed, None, move || {
             driver.join().unwrap();
-            None
+            DeviceReport::default()
         })
     };
     let (run, report) =

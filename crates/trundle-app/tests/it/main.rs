@@ -7,6 +7,7 @@ mod calibrate_camera;
 mod checkpoint_writer;
 mod contact;
 mod convert;
+mod convert_camera;
 mod files;
 mod jitter;
 mod operator;

@@ -6,6 +6,7 @@
 //! The driver stops the base when commands cease, when the link is lost, and at the end. Whether a bumper, a cliff or a hanging wheel
 //! stops the robot is decided by the receiver of the events.
 
+use super::accessories::Accessories;
 use super::base_config::KobukiBaseConfig;
 use super::base_status::{BaseCounters, Status, Versions, locked};
 use super::io_loop::{IoLoop, Queues};
@@ -34,7 +35,7 @@ pub type EventSink = Box<dyn FnMut(SensorEvent) + Send>;
 #[derive(Debug)]
 pub struct KobukiBase {
     commands: Sender<Twist2>,
-    accessories: Sender<KobukiCommand>,
+    accessories: Accessories,
     status: Arc<Mutex<Status>>,
     threads: Vec<JoinHandle<()>>,
 }
@@ -67,6 +68,7 @@ impl KobukiBase {
             status: Arc::clone(&status),
         };
         let io_loop = IoLoop::new(config, clock, connector, (link, decoder), queues);
+        let accessories = Accessories::new(accessories);
         let mut base = Self { commands, accessories, status, threads: Vec::new() };
         base.spawn("kobuki-events", &port, move || deliver(&event_queue, sink))?;
         base.spawn("kobuki-link", &port, move || io_loop.run())?;
@@ -79,19 +81,24 @@ impl KobukiBase {
         self.commands.clone()
     }
 
+    /// Lights, sounds and outputs, for other threads.
+    pub fn accessories(&self) -> Accessories {
+        self.accessories.clone()
+    }
+
     /// Sets all outputs: digital outputs, supplies, lights. They are set again after the return of a lost link.
     pub fn set_outputs(&self, outputs: Outputs) {
-        self.send(KobukiCommand::Outputs(outputs));
+        self.accessories.set_outputs(outputs);
     }
 
     /// Plays a melody of the firmware.
     pub fn play(&self, sequence: SoundSequence) {
-        self.send(KobukiCommand::SoundSequence(sequence));
+        self.accessories.play(sequence);
     }
 
     /// Plays a note of `frequency_hz` (Hz) for `duration_ms`.
     pub fn play_note(&self, frequency_hz: f64, duration_ms: u8) {
-        self.send(KobukiCommand::note(frequency_hz, duration_ms));
+        self.accessories.send(KobukiCommand::note(frequency_hz, duration_ms));
     }
 
     /// Sets the gains of the wheels' speed controllers. Firmware 1.2.0 or later.
@@ -103,14 +110,14 @@ impl KobukiBase {
             require_in(name, gain, "", 0.0, MAX_GAIN)?;
         }
         self.warn_of_old_firmware();
-        self.send(KobukiCommand::SetGains(gains));
+        self.accessories.send(KobukiCommand::SetGains(gains));
         Ok(())
     }
 
     /// Requests the gains; [`KobukiBase::gains`] returns them after the answer. Firmware 1.2.0 or later.
     pub fn request_gains(&self) {
         self.warn_of_old_firmware();
-        self.send(KobukiCommand::GetGains);
+        self.accessories.send(KobukiCommand::GetGains);
     }
 
     /// Gains in the last report of the base.
@@ -148,12 +155,6 @@ impl KobukiBase {
             tracing::warn!(
                 "the base's firmware is {firmware}, expected {GAINS_FIRMWARE} or later for gains: it ignores them"
             );
-        }
-    }
-
-    fn send(&self, command: KobukiCommand) {
-        if self.accessories.send(command).is_err() {
-            tracing::warn!("{command:?} is not sent: the thread of the base has ended");
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::decoder::DecoderCounters;
 use super::protocol::{Feedback, Gains, UniqueId, Version};
+use serde::Serialize;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Facts that the base reports about itself.
@@ -15,8 +16,11 @@ pub struct Versions {
     pub unique_id: Option<UniqueId>,
 }
 
-/// Oldest firmware without known faults according to the vendor: 1.1.4. Source: the vendor's driver, recommended versions 1.1.4 and 1.2.0.
+/// Oldest firmware without known faults according to the vendor: 1.1.4. An older one of the same protocol drives, so it is warned of and not
+/// refused, as in the vendor's driver. Source: the vendor's driver, recommended versions 1.1.4 and 1.2.0.
 const MIN_FIRMWARE: Version = Version::new(1, 1, 4);
+/// Page of the vendor on updates of the firmware.
+pub(super) const FIRMWARE_PAGE: &str = "kobuki.readthedocs.io/en/devel/firmware.html";
 
 impl Versions {
     /// The reason why the firmware is not recommended by the vendor, with the remedy; `None` for a recommended one.
@@ -24,10 +28,11 @@ impl Versions {
         match self.firmware {
             Some(firmware) if firmware >= MIN_FIRMWARE => None,
             Some(firmware) => Some(format!(
-                "the base's firmware is {firmware}, expected {MIN_FIRMWARE} or later: update it"
+                "the base's firmware is {firmware}, expected {MIN_FIRMWARE} or later: it drives, with faults that its maker has mended; \
+                 update it, see {FIRMWARE_PAGE}"
             )),
             None => Some(format!(
-                "the base does not report its firmware's version, expected {MIN_FIRMWARE} or later: update it"
+                "the base does not report its firmware's version, expected {MIN_FIRMWARE} or later: update it, see {FIRMWARE_PAGE}"
             )),
         }
     }
@@ -45,7 +50,7 @@ impl Versions {
 }
 
 /// Events on the link to a base since the start.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct BaseCounters {
     /// Counts of bytes read and dropped.
     pub decoder: DecoderCounters,

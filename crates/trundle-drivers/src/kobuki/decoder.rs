@@ -12,12 +12,13 @@ use super::protocol::feedback::{Feedback, min_feedback_bytes};
 use super::protocol::frame::{
     FRAME_HEADER, FRAME_OVERHEAD_BYTES, MAX_PAYLOAD_BYTES, MIN_PAYLOAD_BYTES, check_payload, checksum,
 };
+use serde::Serialize;
 
 /// Bytes of the largest frame. Source: the protocol's one length byte.
 const MAX_FRAME_BYTES: usize = MAX_PAYLOAD_BYTES + FRAME_OVERHEAD_BYTES;
 
 /// Counts of bytes that a decoder read and dropped.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct DecoderCounters {
     /// Sound packets.
     pub packets: u64,

@@ -110,6 +110,12 @@ impl EmulatedKobuki {
         }
     }
 
+    /// The base with this unique id.
+    #[must_use]
+    pub fn with_unique_id(self, unique_id: UniqueId) -> Self {
+        Self { unique_id, ..self }
+    }
+
     /// The bytes of the next packet, 20 ms after the last one.
     pub fn feedback(&mut self, state: &KobukiState) -> Vec<u8> {
         self.stamp_ms = self.stamp_ms.wrapping_add(FEEDBACK_PERIOD_MS);
@@ -151,6 +157,11 @@ impl EmulatedKobuki {
     /// Counts of read and dropped bytes of drivers.
     pub fn command_counters(&self) -> DecoderCounters {
         self.decoder.counters()
+    }
+
+    /// The requested sounds since the last removal, at most 64.
+    pub fn sounds(&self) -> &[KobukiCommand] {
+        &self.sounds
     }
 
     /// Returns and removes the requested sounds since the last call, at most 64.

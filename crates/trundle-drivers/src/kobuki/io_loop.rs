@@ -2,20 +2,23 @@
 //!
 //! The port is closed when the link counts as lost, which discards bytes from before the loss. The first bytes of a new connection are zero
 //! speed. Commands that come while the link is down are dropped.
+//!
+//! Two bases on one port are a lost link until a window of packets is that of one base. A base other than the run's is a lost link until
+//! the run's base answers.
 
 use super::base_config::KobukiBaseConfig;
+use super::base_identity::BaseIdentity;
 use super::base_status::{Status, locked};
 use super::command_schedule::CommandSchedule;
 use super::decoder::FeedbackDecoder;
 use super::feedback_events::FeedbackEvents;
 use super::link::{ByteLink, Connector};
-use super::link_state::LinkState;
+use super::link_state::{LinkState, Loss, LostLink};
 use super::outbox::Outbox;
 use super::probe::greeting;
 use super::protocol::{BaseControl, Feedback, KobukiCommand, Outputs};
-use super::stream_check::StreamCheck;
+use super::stream_check::{StreamCheck, StreamFault};
 use crate::clock::HostClock;
-use std::io;
 use std::sync::mpsc::{Receiver, SyncSender};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -52,6 +55,7 @@ pub(super) struct IoLoop {
     events: FeedbackEvents,
     schedule: CommandSchedule,
     check: StreamCheck,
+    identity: BaseIdentity,
     outbox: Outbox,
     /// Last requested outputs. The base loses its outputs when it is switched off.
     outputs: Option<Outputs>,
@@ -67,6 +71,7 @@ impl IoLoop {
         (link, decoder): (Box<dyn ByteLink>, FeedbackDecoder),
         queues: Queues,
     ) -> Self {
+        let identity = BaseIdentity::new(locked(&queues.status).versions.unique_id);
         Self {
             config,
             state: LinkState::new(clock(), config.min_retry_s),
@@ -78,6 +83,7 @@ impl IoLoop {
             events: FeedbackEvents::new(config.gyro_source, config.transport_delay_s),
             schedule: CommandSchedule::new(config.command_timeout_s),
             check: StreamCheck::default(),
+            identity,
             outbox: Outbox::default(),
             outputs: None,
             last_ms: None,
@@ -97,26 +103,34 @@ impl IoLoop {
             None => self.reconnect(),
             Some(mut link) => match self.exchange(&mut *link) {
                 Ok(()) => self.link = Some(link),
-                Err(error) => self.lose(&error),
+                Err(lost) => self.lose(&lost),
             },
         }
     }
 
-    /// Reads packets, stores commands, writes.
-    fn exchange(&mut self, link: &mut dyn ByteLink) -> io::Result<()> {
-        let before = (self.clock)();
+    /// Reads packets, stores commands, writes. A speed goes out before accessories that came with it.
+    fn exchange(&mut self, link: &mut dyn ByteLink) -> Result<(), LostLink> {
+        let (before, was_up) = ((self.clock)(), self.state.is_up);
         self.read(link)?;
         let limit = if self.state.is_up { self.config.silence_limit_s } else { FIRST_PACKET_LIMIT_S };
         // Packets that waited during a pause of this thread have been read: only the time before counts.
         if before - self.state.since >= limit {
-            return Err(io::Error::new(io::ErrorKind::TimedOut, format!("no new packet came for {limit} s")));
+            return Err(LostLink::new(Loss::Silence, format!("no new packet came for {limit} s")));
         }
         let now = (self.clock)();
-        self.take_commands(now);
-        self.write(link, now)
+        self.take_speeds(now);
+        self.queue_speed(now);
+        if self.state.is_up && !was_up {
+            self.restore_outputs();
+        }
+        self.take_accessories();
+        if self.identity.is_request_due(now) {
+            self.greet(now);
+        }
+        Ok(self.outbox.write(link, now)?)
     }
 
-    fn read(&mut self, link: &mut dyn ByteLink) -> io::Result<()> {
+    fn read(&mut self, link: &mut dyn ByteLink) -> Result<(), LostLink> {
         let mut buffer = [0; 4096];
         let bytes = link.read(&mut buffer, READ_WAIT)?;
         if bytes == 0 {
@@ -127,22 +141,30 @@ impl IoLoop {
         let mut packets = Vec::new();
         self.decoder.push(&buffer[..bytes], |feedback| packets.push(feedback));
         self.check.on_refused(self.decoder.counters().refused() - refused);
-        packets.into_iter().for_each(|feedback| self.on_feedback(feedback, arrival));
-        self.report_fault();
+        packets.into_iter().try_for_each(|feedback| self.on_feedback(feedback, arrival))?;
+        self.report_fault()?;
         let mut status = locked(&self.queues.status);
         status.counters.decoder = self.decoder.counters();
         status.counters.clock_jumps = self.events.clock_jumps();
         Ok(())
     }
 
-    fn on_feedback(&mut self, feedback: Feedback, arrival: Stamp) {
+    /// Handles a packet.
+    ///
+    /// # Errors
+    /// When another base answers than the run's.
+    fn on_feedback(&mut self, feedback: Feedback, arrival: Stamp) -> Result<(), LostLink> {
+        if let Some(id) = feedback.unique_id {
+            self.identity.on_answer(id).map_err(|other| LostLink::new(Loss::OtherBase, other))?;
+        }
         if let Some(core) = feedback.core {
             self.check.on_packet(core.stamp_ms);
         }
         // A packet with the stamp of the previous one has no new content.
         let stamp_ms = feedback.core.map(|core| core.stamp_ms);
         if stamp_ms.is_some() && std::mem::replace(&mut self.last_ms, stamp_ms) != stamp_ms {
-            let events = if self.state.on_packet(arrival, self.config.silence_limit_s) {
+            let is_steady = self.state.on_packet(arrival, self.config.silence_limit_s);
+            let events = if is_steady && self.identity.is_confirmed() {
                 self.link_up(arrival);
                 self.events.events_after_link_up(&feedback, arrival)
             } else if self.state.is_up {
@@ -152,25 +174,29 @@ impl IoLoop {
             };
             events.into_iter().for_each(|event| self.deliver(event));
         }
-        self.report_identity(&feedback);
         let mut status = locked(&self.queues.status);
         status.versions.update(&feedback);
         status.gains = feedback.gains.or(status.gains);
         status.latest = Some(feedback);
+        Ok(())
     }
 
-    /// The first packet of a connection: commands from before are dropped, the outputs are set. Zero speed is sent since the port is open.
+    /// The first packet of a connection: commands from before are dropped. Zero speed is sent since the port is open.
     fn link_up(&mut self, now: Stamp) {
-        self.take_commands(now);
+        self.take_speeds(now);
+        self.take_accessories();
         (self.state.is_up, self.state.retry_s) = (true, self.config.min_retry_s);
-        if let Some(outputs) = self.outputs {
-            self.outbox.push(&KobukiCommand::Outputs(outputs).encode());
-        }
         locked(&self.queues.status).is_up = true;
         tracing::info!("port {}: the base answers", self.connector.port());
     }
 
-    fn take_commands(&mut self, now: Stamp) {
+    fn restore_outputs(&mut self) {
+        if let Some(outputs) = self.outputs {
+            self.outbox.push(&KobukiCommand::Outputs(outputs).encode());
+        }
+    }
+
+    fn take_speeds(&mut self, now: Stamp) {
         let mut dropped = 0;
         for twist in self.queues.commands.try_iter().take(MAX_COMMANDS_AT_ONCE) {
             if self.state.is_up {
@@ -179,6 +205,11 @@ impl IoLoop {
                 dropped += 1;
             }
         }
+        self.count_dropped(dropped);
+    }
+
+    fn take_accessories(&mut self) {
+        let mut dropped = 0;
         for command in self.queues.accessories.try_iter().take(MAX_COMMANDS_AT_ONCE) {
             if let KobukiCommand::Outputs(outputs) = command {
                 self.outputs = Some(outputs);
@@ -189,29 +220,35 @@ impl IoLoop {
                 dropped += 1;
             }
         }
-        if dropped > 0 {
-            locked(&self.queues.status).counters.commands_dropped += dropped;
+        self.count_dropped(dropped);
+    }
+
+    fn count_dropped(&self, commands: u64) {
+        if commands > 0 {
+            locked(&self.queues.status).counters.commands_dropped += commands;
         }
     }
 
-    fn write(&mut self, link: &mut dyn ByteLink, now: Stamp) -> io::Result<()> {
+    /// Queues the speed that is due, if the line has taken all earlier bytes.
+    fn queue_speed(&mut self, now: Stamp) {
         if self.outbox.is_empty()
             && let Some(control) = self.schedule.due(now)
         {
             self.outbox.push(&KobukiCommand::BaseControl(control).encode());
             locked(&self.queues.status).counters.speeds_sent += 1;
         }
-        self.outbox.write(link, now)
     }
 
-    fn lose(&mut self, error: &io::Error) {
+    fn lose(&mut self, lost: &LostLink) {
         let now = (self.clock)();
         let was_up = self.state.is_up;
-        if was_up {
+        if was_up || lost.loss == Loss::OtherBase && self.identity.refusals().is_power_of_two() {
             tracing::warn!(
-                "port {}: the link to the base is lost: {error}; it is opened again",
+                "port {}: the link to the base is lost: {lost}; it is opened again",
                 self.connector.port()
             );
+        }
+        if was_up {
             let event = self.events.link_event(false, now);
             self.deliver(event);
         }
@@ -219,7 +256,8 @@ impl IoLoop {
         status.counters.link_losses += u64::from(was_up);
         status.is_up = false;
         drop(status);
-        self.state.lose(now, error.kind() == io::ErrorKind::TimedOut);
+        self.state.lose(now, lost.loss);
+        self.identity.forget();
         self.decoder.clear();
         self.outbox.clear();
         self.schedule.restart();
@@ -228,7 +266,8 @@ impl IoLoop {
     /// Opens the port if the next attempt is due.
     fn reconnect(&mut self) {
         let now = (self.clock)();
-        self.take_commands(now);
+        self.take_speeds(now);
+        self.take_accessories();
         if now - self.state.since < self.state.retry_s {
             return std::thread::sleep(CLOSED_WAIT);
         }
@@ -237,11 +276,16 @@ impl IoLoop {
         locked(&self.queues.status).counters.reconnects += 1;
         match self.connector.connect() {
             Ok(link) => {
-                self.outbox.push(&greeting());
+                self.greet(now);
                 self.link = Some(link);
             }
             Err(error) => tracing::debug!("{error}"),
         }
+    }
+
+    fn greet(&mut self, now: Stamp) {
+        self.outbox.push(&greeting());
+        self.identity.note_request(now);
     }
 
     fn deliver(&self, event: SensorEvent) {
@@ -256,9 +300,18 @@ impl IoLoop {
     }
 
     /// Warns when the stream becomes faulty: the first time, the second, the fourth and so on.
-    fn report_fault(&mut self) {
-        let Some((fault, count)) = self.check.new_fault() else { return };
-        locked(&self.queues.status).counters.stream_faults += 1;
+    ///
+    /// # Errors
+    /// When two bases send on the port and the link is up. A link that is down stays so until one base has sent alone for a second.
+    fn report_fault(&mut self) -> Result<(), LostLink> {
+        let new = self.check.new_fault();
+        locked(&self.queues.status).counters.stream_faults += u64::from(new.is_some());
+        if let Some(fault @ StreamFault::TwoSources { .. }) = self.check.fault() {
+            self.state.restart_count();
+            let lost = self.state.is_up.then(|| LostLink::new(Loss::OtherBase, fault));
+            return lost.map_or(Ok(()), Err);
+        }
+        let Some((fault, count)) = new else { return Ok(()) };
         let port = self.connector.port();
         match count {
             1 => tracing::warn!("port {port}: {fault}"),
@@ -267,24 +320,14 @@ impl IoLoop {
             }
             _ => {}
         }
+        Ok(())
     }
 
-    /// Warns if the base differs from the previous one.
-    fn report_identity(&self, feedback: &Feedback) {
-        let known = locked(&self.queues.status).versions.unique_id;
-        if let (Some(known), Some(id)) = (known, feedback.unique_id)
-            && known != id
-        {
-            tracing::warn!(
-                "port {}: base {id} answers, expected base {known}: two bases are in use",
-                self.connector.port()
-            );
-        }
-    }
-
+    /// Sends zero speed, then the accessories that still wait.
     fn stop(&mut self) {
         let Some(mut link) = self.link.take() else { return };
         self.outbox.push(&KobukiCommand::BaseControl(BaseControl::STOP).encode());
+        self.take_accessories();
         let start = (self.clock)();
         while !self.outbox.is_empty() && (self.clock)() - start < STOP_LIMIT_S {
             if let Err(error) = self.outbox.write(&mut *link, start) {

@@ -1,5 +1,6 @@
 //! Reason why a base cannot be started.
 
+use super::base_status::FIRMWARE_PAGE;
 use super::link::ConnectError;
 use super::protocol::Version;
 use super::stream_check::StreamFault;
@@ -60,9 +61,7 @@ pub enum StartError {
         fault: StreamFault,
     },
     /// The firmware has another protocol version.
-    #[error(
-        "port {port}: the base's firmware is {firmware}, expected 1.x: update it, see kobuki.readthedocs.io/en/devel/firmware.html"
-    )]
+    #[error("port {port}: the base's firmware is {firmware}, expected 1.x: update it, see {FIRMWARE_PAGE}")]
     Firmware {
         /// The port.
         port: String,

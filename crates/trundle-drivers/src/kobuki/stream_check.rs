@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::fmt;
 
 /// Number of the newest packets and refused headers that are compared: 50, a second of a sound stream. Source: ours.
-const WINDOW_PACKETS: usize = 50;
+pub(super) const WINDOW_PACKETS: usize = 50;
 /// Step between the stamps of two packets below which they come from two bases: 15 ms. Source: ours; a base's step is 20 ms.
 const MIN_STEP_MS: i16 = 15;
 /// Number of such steps in the window that counts as a fault: 5. Source: ours; a restart of the base gives one.

@@ -129,7 +129,10 @@ fn pieces(state: &mut State, second: &mut EmulatedKobuki) -> Vec<Vec<u8>> {
         Sends::TwoBases => vec![packet, second.feedback(&state.sensors)],
         Sends::LostBytes if left % 2 == 0 => vec![packet[..30].to_vec(), packet[31..].to_vec()],
         Sends::LostBytes => vec![packet],
-        Sends::Bursts => (0..9).map(|_| state.base.feedback(&state.sensors)).chain([packet]).collect(),
+        Sends::Bursts => {
+            let later = (0..9).map(|_| state.base.feedback(&state.sensors));
+            std::iter::once(packet).chain(later).collect()
+        }
         Sends::OtherDevice => vec![b"$GPGGA,123519,4807.038,N\xAA\x55\r\n".to_vec()],
     }
 }

@@ -4,8 +4,8 @@ use crate::device::{Device, Sends};
 use crate::rig::{Rig, clock, is_near, patient, wait_for};
 use std::sync::mpsc;
 use trundle_core::{SensorEvent, Twist2};
-use trundle_drivers::kobuki::protocol::{Led, Outputs, Version};
-use trundle_drivers::kobuki::{KobukiBase, SerialConnector};
+use trundle_drivers::kobuki::protocol::{Led, Outputs, UniqueId, Version};
+use trundle_drivers::kobuki::{EmulatedKobuki, KobukiBase, SerialConnector};
 
 #[test]
 fn after_an_unplugged_cable_the_first_speed_is_zero() {
@@ -88,15 +88,55 @@ fn pieces_and_garbage_cost_nothing() {
 }
 
 #[test]
-fn a_second_base_on_the_port_is_noticed() {
+fn a_second_base_on_the_port_is_a_lost_link_until_it_is_gone() {
     let rig = Rig::start("second", Sends::Packets);
-    wait_for("the link", || rig.base.is_up());
+    let fast = Twist2::new(0.3, 0.0);
+    rig.drive(fast);
     assert_eq!(rig.base.counters().stream_faults, 0);
     rig.device.state().sends = Sends::TwoBases;
-    wait_for("the fault", || rig.base.counters().stream_faults > 0);
+    wait_for("the loss", || rig.links() == [true, false]);
+    assert!(rig.base.counters().stream_faults > 0);
+    wait_for("zero speed", || rig.device.state().twists.last() == Some(&Twist2::ZERO));
+    let before = rig.device.state().twists.len();
+    let packets = rig.base.counters().decoder.packets;
+    wait_for("three seconds of packets of both", || {
+        rig.base.commands().send(fast).unwrap();
+        rig.base.counters().decoder.packets > packets + 300
+    });
+    assert!(rig.device.state().twists[before..].iter().all(|twist| *twist == Twist2::ZERO), "it drove");
+    assert_eq!(rig.links(), [true, false]);
     rig.device.state().sends = Sends::Packets;
+    let packets = rig.base.counters().decoder.packets;
+    wait_for("the link", || rig.links() == [true, false, true]);
+    assert!(rig.base.counters().decoder.packets >= packets + 50, "a clean window comes first");
     rig.drive(Twist2::new(0.2, 0.0));
     assert!(rig.events().is_sorted_by_key(SensorEvent::stamp), "stamps run backwards");
+}
+
+#[test]
+fn another_base_on_the_port_is_not_driven() {
+    let rig = Rig::start("other-base", Sends::Packets);
+    let fast = Twist2::new(0.3, 0.0);
+    rig.drive(fast);
+    let plug = |base: EmulatedKobuki| {
+        rig.device.state().is_plugged = false;
+        wait_for("the loss", || !rig.base.is_up());
+        let mut state = rig.device.state();
+        state.twists.clear();
+        state.base = base;
+        state.is_plugged = true;
+    };
+    plug(EmulatedKobuki::default().with_unique_id(UniqueId([7, 7, 7])));
+    let attempts = rig.base.counters().reconnects;
+    wait_for("some attempts", || {
+        rig.base.commands().send(fast).unwrap();
+        rig.base.counters().reconnects > attempts + 3
+    });
+    assert_eq!(rig.links(), [true, false], "the other base brings no link");
+    assert!(rig.device.state().twists.iter().all(|twist| *twist == Twist2::ZERO), "it drove another base");
+    plug(EmulatedKobuki::default());
+    wait_for("the link", || rig.links() == [true, false, true]);
+    rig.drive(Twist2::new(0.2, 0.0));
 }
 
 #[test]

@@ -73,7 +73,9 @@ fn a_firmware_of_another_protocol_is_refused_and_an_old_one_is_not() {
     wait_for("zero speed all the same", || device.state().twists.contains(&Twist2::ZERO));
     let device = Device::plugged("old", Sends::Packets, Version::new(1, 0, 0));
     let connector = Box::new(SerialConnector::new(device.port()));
-    assert!(KobukiBase::start(connector, patient(), clock(), Box::new(drop)).is_ok());
+    let base = KobukiBase::start(connector, patient(), clock(), Box::new(drop)).unwrap();
+    let fault = base.versions().firmware_fault().unwrap();
+    assert!(fault.starts_with("the base's firmware is 1.0.0, expected 1.1.4 or later: it drives"), "{fault}");
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod freenect;
 mod kinect2_usb;
 mod library;
 mod openni2;
+mod openni2_recording;
 mod orbbec;
 mod realsense;
 mod support;

@@ -14,7 +14,7 @@ const TIMEOUT: Duration = Duration::from_secs(5);
 const FRAMES: usize = 3;
 
 /// The library; libusb and libjpeg are loaded before it.
-fn library() -> Option<PathBuf> {
+pub fn library() -> Option<PathBuf> {
     Some(list(&[libusb()?, debian("libjpeg.so.62")?, debian("libOpenNI2.so.0")?]))
 }
 

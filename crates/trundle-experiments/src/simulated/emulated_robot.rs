@@ -10,7 +10,7 @@ use trundle_app::real_time::RealTimePacer;
 use trundle_core::{BodyEvent, BodyEventKind, Pose2, RobotBody, SensorEvent, Twist2};
 use trundle_drivers::kobuki::emulator::{EmulatedKobuki, KobukiState};
 use trundle_drivers::kobuki::link::ByteLink;
-use trundle_drivers::kobuki::protocol::Charger;
+use trundle_drivers::kobuki::protocol::{Charger, KobukiCommand};
 use trundle_drivers::kobuki::pseudo_terminal::PseudoTerminal;
 use trundle_sim::Simulator;
 
@@ -99,7 +99,19 @@ impl EmulatedRobot {
             ),
             row("packets sent, commands received", format!("{packets}, {commands}")),
             row("images sent, not taken", format!("{images}, {images_not_taken}")),
+            row("first light", self.kobuki.outputs().led1.to_string()),
+            row("melodies received", self.melodies()),
         ]
+    }
+
+    /// The melodies that the base was asked to play, in order.
+    fn melodies(&self) -> String {
+        let names = self.kobuki.sounds().iter().filter_map(|sound| match sound {
+            KobukiCommand::SoundSequence(melody) => Some(melody.to_string()),
+            _ => None,
+        });
+        let names: Vec<String> = names.collect();
+        if names.is_empty() { "none".to_owned() } else { names.join(", ") }
     }
 
     /// The simulator: truth, contacts.

@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use trundle_app::AppError;
-use trundle_app::real_time::{EventFeed, LiveBody, TimedEvent};
+use trundle_app::real_time::{DeviceReport, EventFeed, LiveBody, TimedEvent};
 use trundle_core::{DifferentialDrive, Invalid, Odometry, PinholeCamera, Pose3, Stamp};
 use trundle_drivers::camera::camera_thread::{CameraThread, CameraThreadConfig, CameraThreadParts};
 use trundle_runtime::real_time::InboxSender;
@@ -202,7 +202,7 @@ impl Ros2Body {
             drop(commands);
             drop(links);
             *lock(&shared.sink) = None;
-            camera.last_fault()
+            DeviceReport::of_camera(camera.counters(), camera.last_fault())
         })
     }
 

@@ -5,7 +5,10 @@ use crate::behaviour::drive_state::DriveState;
 use crate::operator::{PoseGuess, RunSetting};
 use crate::reason::{Reason, TransitionReason};
 use trundle_control::MotionHold;
-use trundle_core::{GridGeometry, Invalid, MapAnnotations, Pose2, Stamp, difference_of_angles};
+use trundle_core::{
+    BodyEvent, BodyEventKind, Button, GridGeometry, Invalid, MapAnnotations, Pose2, Stamp,
+    difference_of_angles,
+};
 use trundle_estimation::{VisualVerdict, WheelCounts, WheelReport};
 
 /// Smallest correction of the pose estimate that is logged \[m\]. Source: ours, the size of a grid cell.
@@ -134,6 +137,13 @@ pub(super) fn visual_verdict(at: Stamp, verdict: VisualVerdict) {
                 "{at:.3} s: an image recognises a place that the scans and the wheels contradict; it is refused"
             );
         }
+    }
+}
+
+/// Logs a press of a button of the body.
+pub(super) fn body(event: &BodyEvent) {
+    if let BodyEventKind::Button(Button { index, pressed: true }) = event.kind {
+        tracing::info!("{:.3} s: button B{index} is pressed", event.stamp.as_secs());
     }
 }
 

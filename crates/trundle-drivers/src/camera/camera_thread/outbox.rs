@@ -1,12 +1,13 @@
 //! The sink of images and link events, the state of the link, and the counters.
 
 use super::config::{EventSink, HostClock};
+use serde::Serialize;
 use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use trundle_core::{BodyEvent, BodyEventKind, Device, GyroRate, Link, RgbdImage, SensorEvent};
 
 /// Frames counted since the start of a camera thread.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct CameraCounters {
     /// Frames pushed into the sink.
     pub frames: u64,

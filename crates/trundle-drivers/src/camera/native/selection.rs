@@ -4,6 +4,10 @@ use crate::camera::UsbSpeed;
 use std::fmt;
 use std::path::PathBuf;
 
+/// Endings of the recordings of all cameras, in lower case. Source: librealsense's recorder (`.db3`, `.bag`), OpenNI2's recorder (`.oni`),
+/// OrbbecSDK's recorder (`.bag`), the dumps of a Kinect V2 (`.dump`).
+const RECORDING_ENDINGS: [&str; 4] = [".db3", ".bag", ".oni", ".dump"];
+
 /// Kind of a camera, named after the library that drives it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum NativeKind {
@@ -30,6 +34,11 @@ impl NativeKind {
         #[cfg(feature = "kinect2-usb")]
         Self::Kinect2Usb,
     ];
+
+    /// Whether a serial number of this kind may hold a slash: OpenNI2 names a camera by a URI, as `1d27/0601@1/9`.
+    const fn has_slash_in_serial(self) -> bool {
+        matches!(self, Self::OpenNi2)
+    }
 
     /// The cameras of this kind, for messages.
     pub fn cameras(self) -> &'static str {
@@ -71,6 +80,21 @@ pub enum Selection {
 }
 
 impl Selection {
+    /// The camera of `kind` that a user names by `which`: the first, a serial number, or a recording. Only this function decides by the name
+    /// what a recording is: a base must not drive by one. A driver whose library opens files under any name must ask the library as well.
+    #[must_use]
+    pub fn named(kind: NativeKind, which: Option<&str>) -> Self {
+        let lower = which.unwrap_or_default().to_lowercase();
+        let is_path = lower.contains('/') && !kind.has_slash_in_serial();
+        match which {
+            None => Self::First,
+            Some(file) if is_path || RECORDING_ENDINGS.iter().any(|end| lower.ends_with(end)) => {
+                Self::File(file.into())
+            }
+            Some(serial) => Self::Serial(serial.to_owned()),
+        }
+    }
+
     /// The camera in words, for errors.
     pub(in crate::camera) fn describe(&self, kind: &str) -> String {
         match self {
@@ -92,4 +116,49 @@ pub struct DeviceEntry {
     pub firmware: String,
     /// Speed of the USB connection; `None` if unknown or not USB.
     pub usb: Option<UsbSpeed>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_recording_of_any_maker_is_a_file_for_every_kind_of_camera() {
+        for kind in NativeKind::ALL {
+            for name in
+                ["drive.db3", "drive.bag", "drive.oni", "DRIVE.ONI", "a b.Bag", "kinect.dump", "d/x.oni"]
+            {
+                assert_eq!(
+                    Selection::named(*kind, Some(name)),
+                    Selection::File(name.into()),
+                    "{kind}:{name}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_serial_number_of_any_maker_is_a_camera() {
+        use NativeKind::{Freenect, OpenNi2, Orbbec, RealSense};
+        let serials = [
+            (RealSense, "832112070255"),
+            (Freenect, "A00362A08602047A"),
+            (Orbbec, "AB12"),
+            (OpenNi2, "1d27/0601@1/9"),
+            (OpenNi2, "freenect://0"),
+            (OpenNi2, "Dummy"),
+        ];
+        for (kind, serial) in serials {
+            assert_eq!(Selection::named(kind, Some(serial)), Selection::Serial(serial.into()), "{kind}");
+        }
+        assert!(NativeKind::ALL.iter().all(|kind| Selection::named(*kind, None) == Selection::First));
+    }
+
+    #[test]
+    fn a_path_is_a_file_except_where_a_serial_number_looks_like_one() {
+        for kind in NativeKind::ALL {
+            let is_file = matches!(Selection::named(*kind, Some("/dev/shm/drive")), Selection::File(_));
+            assert_eq!(is_file, *kind != NativeKind::OpenNi2, "{kind}");
+        }
+    }
 }

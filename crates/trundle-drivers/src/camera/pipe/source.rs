@@ -23,7 +23,7 @@ pub(super) struct Source {
 /// When the path does not exist or is not readable.
 pub(super) fn open(path: &Path, is_stopped: Arc<AtomicBool>) -> io::Result<Source> {
     if path.as_os_str() == "-" {
-        return Ok(Source { reader: Box::new(io::stdin()), is_file: false });
+        return Ok(Source { reader: Box::new(io::stdin()), is_file: is_file(io::stdin()) });
     }
     let mut options = OpenOptions::new();
     options.read(true);
@@ -34,6 +34,20 @@ pub(super) fn open(path: &Path, is_stopped: Arc<AtomicBool>) -> io::Result<Sourc
         return Ok(Source { reader: Box::new(file), is_file: true });
     }
     Ok(Source { reader: Box::new(FifoReader { file, has_begun: false, is_stopped }), is_file: false })
+}
+
+/// Whether these bytes come from a file, as those of standard input after `< FILE`.
+#[cfg(unix)]
+fn is_file(input: impl std::os::fd::AsFd) -> bool {
+    rustix::fs::fstat(input).is_ok_and(|about| {
+        rustix::fs::FileType::from_raw_mode(about.st_mode) == rustix::fs::FileType::RegularFile
+    })
+}
+
+/// Elsewhere the header decides.
+#[cfg(not(unix))]
+fn is_file(_: io::Stdin) -> bool {
+    false
 }
 
 /// A FIFO with non-blocking reads, whose thread ends on request.
@@ -58,5 +72,16 @@ impl Read for FifoReader {
             std::thread::sleep(Duration::from_millis(IDLE_WAIT_MS));
         }
         Ok(0)
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_redirected_file_is_a_file_and_a_pipe_is_not() {
+        assert!(is_file(tempfile::tempfile().unwrap()));
+        assert!(!is_file(std::io::pipe().unwrap().0));
     }
 }

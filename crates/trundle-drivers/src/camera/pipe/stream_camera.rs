@@ -43,8 +43,8 @@ enum Message {
 }
 
 impl StreamCamera {
-    /// Opens a file or a FIFO, or standard input for `-`, and waits at most `timeout` for the header. A file is a recording: it is not
-    /// live, whatever its header contains.
+    /// Opens a file or a FIFO, or standard input for `-`, and waits at most `timeout` for the header. A file, also as standard input, is a
+    /// recording: it is not live, whatever its header contains.
     ///
     /// # Errors
     /// When the path cannot be read, or its header does not come in time or is not valid.

@@ -3,6 +3,7 @@
 use super::*;
 use crate::kobuki::emulator::{EmulatedKobuki, KobukiState};
 use crate::kobuki::link::ConnectError;
+use std::io;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::mpsc::{Sender, channel, sync_channel};
 
@@ -142,4 +143,30 @@ fn a_thread_that_stands_still_does_not_lose_the_link() {
         [true, true, true, true, false],
         "the last read began half a second after the last packet"
     );
+}
+
+#[test]
+fn accessories_do_not_delay_a_speed() {
+    let speeds = |with_accessories: bool| -> Vec<Vec<u8>> {
+        let mut base = EmulatedKobuki::default();
+        let reads = (0..12).map(|_| base.feedback(&KobukiState::default())).collect();
+        let (link, written) = scripted(reads, 1000);
+        let (mut io_loop, commands, millis) = looped(link, scripted(Vec::new(), 0).0);
+        let (accessories, queue) = channel();
+        io_loop.queues.accessories = queue;
+        let mut speeds = Vec::new();
+        for i in 0..12 {
+            millis.store(5 * i, Ordering::SeqCst);
+            commands.send(Twist2::new(0.01 * i as f64, 0.0)).unwrap();
+            if with_accessories {
+                accessories.send(KobukiCommand::Outputs(Outputs::from_word(i as u16))).unwrap();
+            }
+            io_loop.step();
+            let bytes = std::mem::take(&mut *written.lock().unwrap());
+            assert_eq!(bytes.len() > 10, with_accessories, "the accessory goes out in the same step");
+            speeds.push(bytes.into_iter().take(10).collect());
+        }
+        speeds
+    };
+    assert_eq!(speeds(true), speeds(false));
 }

@@ -4,6 +4,7 @@ use super::base_control::BaseControl;
 use super::device_info::Gains;
 use super::fields::{Fields, bits, word_of};
 use super::frame::{PayloadError, check_payload, frame, push_sub_payload, sub_payloads};
+use std::fmt;
 
 /// Time unit of a note's period: 2.75e-6 s. Source: the protocol's "Sound", period = 1 / (f a).
 const NOTE_PERIOD_UNIT_S: f64 = 0.000_002_75;
@@ -73,6 +74,21 @@ impl SoundSequence {
     ];
 }
 
+/// The vendor's name of the melody.
+impl fmt::Display for SoundSequence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::On => "on",
+            Self::Off => "off",
+            Self::Recharge => "recharge",
+            Self::Button => "button",
+            Self::Error => "error",
+            Self::CleaningStart => "cleaning start",
+            Self::CleaningEnd => "cleaning end",
+        })
+    }
+}
+
 /// The colours of a light.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Led {
@@ -80,6 +96,28 @@ pub struct Led {
     pub red: bool,
     /// Green is on.
     pub green: bool,
+}
+
+impl Led {
+    /// The light is dark.
+    pub const OFF: Self = Self { red: false, green: false };
+    /// The light is red.
+    pub const RED: Self = Self { red: true, green: false };
+    /// The light is green.
+    pub const GREEN: Self = Self { red: false, green: true };
+    /// The light is orange.
+    pub const ORANGE: Self = Self { red: true, green: true };
+}
+
+impl fmt::Display for Led {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match (self.red, self.green) {
+            (false, false) => "off",
+            (true, false) => "red",
+            (false, true) => "green",
+            (true, true) => "orange",
+        })
+    }
 }
 
 /// All outputs of the base. One command sets all of them. By default the four supplies are on, as at the base's start, and all others are

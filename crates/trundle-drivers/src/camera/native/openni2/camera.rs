@@ -47,13 +47,17 @@ impl OpenNiCamera {
     /// number of `selection` is the URI of [`list_devices`]; `Dummy` is the driver's own test image.
     ///
     /// # Errors
-    /// When the camera is missing or in use, it reports no field of view and the settings give no calibration, or `selection` is a file.
+    /// When the camera is missing or in use, it reports no field of view and the settings give no calibration, or it is a recording.
     pub fn open(
         api: &Arc<OpenNiApi>,
         selection: &Selection,
         settings: &OpenNiSettings,
     ) -> Result<Self, CameraError> {
-        let device = OpenDevice::open(api, &uri(api, selection)?)?;
+        let uri = uri(api, selection)?;
+        let device = OpenDevice::open(api, &uri)?;
+        if device.is_recording() {
+            return Err(no_recording(&uri));
+        }
         let is_registered = device.register_depth();
         let info = info(&device, settings, is_registered)?;
         device.start()?;
@@ -90,11 +94,15 @@ fn uri(api: &Arc<OpenNiApi>, selection: &Selection) -> Result<String, CameraErro
             let first = list_devices(api)?.into_iter().next();
             first.map(|device| device.serial).ok_or_else(|| CameraError::NoDevice { kind: KIND.into() })
         }
-        Selection::File(file) => Err(CameraError::StreamsUnavailable {
-            device: KIND.into(),
-            wanted: format!("the recording {}", file.display()),
-            remedy: "convert it to a camera stream".into(),
-        }),
+        Selection::File(file) => Err(no_recording(&file.display().to_string())),
+    }
+}
+
+fn no_recording(file: &str) -> CameraError {
+    CameraError::StreamsUnavailable {
+        device: KIND.into(),
+        wanted: format!("the recording {file}"),
+        remedy: "convert it to a camera stream, or name a camera as `trundle devices` lists it".into(),
     }
 }
 

@@ -103,6 +103,7 @@ functions! {
         fn oniDeviceClose(*mut OpenNiDevice) -> c_int;
         fn oniDeviceGetInfo(*mut OpenNiDevice, *mut DeviceInfo) -> c_int;
         fn oniDeviceSetProperty(*mut OpenNiDevice, c_int, *const c_void, c_int) -> c_int;
+        fn oniDeviceIsCommandSupported(*mut OpenNiDevice, c_int) -> c_int;
         fn oniDeviceIsImageRegistrationModeSupported(*mut OpenNiDevice, c_int) -> c_int;
         fn oniDeviceCreateStream(*mut OpenNiDevice, c_int, *mut *mut Stream) -> c_int;
         fn oniStreamDestroy(*mut Stream);

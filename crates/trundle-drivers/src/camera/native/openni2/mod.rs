@@ -1,7 +1,8 @@
 //! Xtion and the first Astra through OpenNI2.
 //!
 //! Tested with the dummy device of version 2.2.0.33. It was not tested with a real camera. Recordings (`.oni`) are refused: this version
-//! delivers no frame from a recording of its dummy device.
+//! delivers no frame from a recording of its dummy device. The library opens a recording under any file name, so the driver asks it for the
+//! kind of each device.
 //!
 //! The library reports an unplugged camera as silence.
 //!

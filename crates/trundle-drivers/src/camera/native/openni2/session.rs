@@ -12,6 +12,7 @@ use trundle_core::{Invalid, Stamp};
 
 const SENSOR_COLOR: c_int = 2;
 const SENSOR_DEPTH: c_int = 3;
+const DEVICE_COMMAND_SEEK: c_int = 1;
 const DEVICE_PROPERTY_REGISTRATION: c_int = 5;
 const REGISTRATION_DEPTH_TO_COLOR: c_int = 1;
 const STREAM_PROPERTY_HORIZONTAL_FOV: c_int = 1;
@@ -101,6 +102,12 @@ impl OpenDevice {
             );
         }
         Ok(())
+    }
+
+    /// Whether the device is a recording, which the library opens under any file name: only a recording can be wound to another frame.
+    pub(super) fn is_recording(&self) -> bool {
+        // SAFETY: the device is valid.
+        unsafe { (self.api.oniDeviceIsCommandSupported)(self.device, DEVICE_COMMAND_SEEK) != 0 }
     }
 
     /// Requests depth registered to colour; `false` if the device does not offer it.
