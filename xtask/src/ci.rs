@@ -36,7 +36,7 @@ const REST: [Step; 13] = [
             program::cargo(root, &["doc", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-Dwarnings")])
         },
     },
-    Step { name: "cargo xtask fuzz --seconds 5", check: fuzz::run_in_ci },
+    Step { name: "cargo xtask fuzz --seconds 2", check: fuzz::run_in_ci },
     Step {
         name: "cargo build --release --package trundle-cli --features ros2,mqtt,foxglove,tls",
         check: |root| program::release_trundle(root).map(|_| true),

@@ -59,7 +59,7 @@ pub fn run(root: &Path, options: &Options) -> Verdict {
     program::cargo(root, &cargo, if options.guided { &environment } else { &[] })
 }
 
-/// Five seconds per target, with the runner built by the workspace's tests: no compilation.
+/// Two seconds per target, with the runner built by the workspace's tests: no compilation.
 pub fn run_in_ci(root: &Path) -> Verdict {
     if !program::cargo(root, &["test", "--workspace", "--no-run", "--quiet"], &[])? {
         return Ok(false);
@@ -67,7 +67,7 @@ pub fn run_in_ci(root: &Path) -> Verdict {
     let runner =
         program::target(root)?.join("debug").join(format!("trundle-fuzz{}", std::env::consts::EXE_SUFFIX));
     let status =
-        Command::new(&runner).args(["run", "5", "1"]).current_dir(root).stdin(Stdio::null()).status();
+        Command::new(&runner).args(["run", "2", "1"]).current_dir(root).stdin(Stdio::null()).status();
     Ok(status.map_err(|error| format!("cannot start {}: {error}", runner.display()))?.success())
 }
 
