@@ -8,8 +8,8 @@
 # left out. Exit 0 when every check holds or the environment cannot be had (a line begins with "skipped: "), else 1.
 set -u
 
-# Parts of user.py that take 2 minutes together; all of them take 4.
-user_parts="goal transforms cancel preempt wrong_frame not_finite late_joiner lifecycle_states clear_costmaps save_map load_map"
+# Parts of user.py that take 2 minutes together; all of them take 4. `transforms` watches while the others drive.
+user_parts="goal transforms cancel preempt wrong_frame unreachable not_finite late_joiner lifecycle_states clear_costmaps save_map load_map"
 
 if [ $# -lt 1 ]; then
     echo "check: the folder is missing; call: check.sh DIR [TRUNDLE]" >&2
@@ -48,6 +48,7 @@ if [ $# -gt 1 ]; then
     run goals.py --trundle "$2" --worlds flat corridor-a
     run user.py --trundle "$2" --only $user_parts
     run faults.py --trundle "$2" --only restart_trundle
+    run replies.py --trundle "$2"
     run bad_input.py --trundle "$2"
     run sim_images.py --trundle "$2"
 fi

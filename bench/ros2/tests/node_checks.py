@@ -17,21 +17,26 @@ WATCH_S = 30.0
 NUMBERS = {ParameterType.PARAMETER_DOUBLE: "double_value", ParameterType.PARAMETER_INTEGER: "integer_value"}
 
 
-def transforms(checks, user, options):
-    """30 s of TF without a gap, and no jump of the robot in the map; the robot turns meanwhile."""
-    found = {pair: [] for pair in GAPS_S}
+class TransformWatch:
+    """Collects TF for WATCH_S of simulated time from its start on, while other parts drive the robot."""
 
-    def take(message):
-        for t in message.transforms:
-            found.get((t.header.frame_id.lstrip("/"), t.child_frame_id.lstrip("/")), []).append(t)
-    subscription = user.node.create_subscription(TFMessage, "/tf", take, 100)
-    user.wait_simulated(1.0)
-    end = user.now() + WATCH_S
-    sent = user.send("spin", target_yaw=2 * math.pi)
-    user.until(lambda: user.now() > end, 10 * WATCH_S)
-    if sent.done and not sent.done.done():
-        sent.cancel()
-    user.node.destroy_subscription(subscription)
+    def __init__(self, user):
+        self.user, self.found, self.begin = user, {pair: [] for pair in GAPS_S}, user.now()
+        # No message is lost while a part does not spin.
+        user.node.create_subscription(TFMessage, "/tf", self.take, 1000)
+
+    def is_over(self):
+        return self.user.now() > self.begin + WATCH_S
+
+    def take(self, message):
+        for t in message.transforms if not self.is_over() else []:
+            self.found.get((t.header.frame_id.lstrip("/"), t.child_frame_id.lstrip("/")), []).append(t)
+
+
+def transforms(checks, user, options):
+    """30 s of TF without a gap, and no jump of the robot in the map, while it drives: since the start of the program."""
+    user.until(options.watch.is_over, 10 * WATCH_S)
+    found = options.watch.found
     for pair, limit in GAPS_S.items():
         times = [seconds(t.header.stamp) for t in found[pair]]
         gaps = [b - a for a, b in zip(times, times[1:])]

@@ -23,17 +23,16 @@ class Caller(Listener):
 
     def __init__(self, node):
         super().__init__("replies")
-        self.target = node
+        self.target, self.clients = node, {}
 
     def call(self, kind, name, request):
         """The answer; `None` if it does not come."""
-        client = self.node.create_client(kind, name)
-        if not self.until(client.service_is_ready, LIMIT_S):
-            return None
-        self.spin(0.3)
-        answer = self.result(client.call_async(request), LIMIT_S)
-        self.node.destroy_client(client)
-        return answer
+        if name not in self.clients:
+            self.clients[name] = self.node.create_client(kind, name)
+            if not self.until(self.clients[name].service_is_ready, LIMIT_S):
+                return None
+            self.spin(0.3)
+        return self.result(self.clients[name].call_async(request), LIMIT_S)
 
     def own(self, kind, name, request):
         return self.call(kind, f"{self.target}/{name}", request)

@@ -17,7 +17,7 @@ from mujoco_robot import worlds
 from nav2_msgs.srv import ManageLifecycleNodes
 from nav2_user import FAR, NEAR, User, outcome, status
 from nav_msgs.msg import Path
-from node_checks import lifecycle_states, parameters, transforms
+from node_checks import TransformWatch, lifecycle_states, parameters, transforms
 
 # Codes of an unreachable goal: GOAL_OUTSIDE_MAP, GOAL_OCCUPIED, NO_VALID_PATH of ComputePathToPose.
 UNREACHABLE_CODES = {204, 206, 208}
@@ -253,6 +253,7 @@ def main():
     processes = goals.start(options, options.out, "flat", options.seed)
     try:
         if checks.check("trundle is active", user.wait_until_active()):
+            options.watch = TransformWatch(user)
             for part in [p for p in PARTS if not options.only or p.__name__ in options.only]:
                 print(f"-- {part.__name__}", flush=True)
                 try:
