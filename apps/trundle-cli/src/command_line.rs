@@ -95,6 +95,37 @@ mod tests {
     use super::*;
     use clap::CommandFactory;
 
+    #[cfg(feature = "ros2")]
+    #[test]
+    fn a_run_needs_a_mission_or_ros_2() {
+        let parse = |given: &[&str]| {
+            Cli::try_parse_from([&["trundle", "run", "--camera", "folder:/tmp"][..], given].concat())
+        };
+        let refusal = parse(&[]).unwrap_err().to_string();
+        assert!(refusal.contains("--goal <X,Y,DEG>") && refusal.contains("--ros2"), "{refusal}");
+        assert!(parse(&["--raw-images"]).is_err());
+        for (given, tasks) in [("--ros2", 0), ("--ros2 --explore", 2), ("--dock", 1)] {
+            let given: Vec<&str> = given.split(' ').collect();
+            let Command::Run(args) = parse(&given).unwrap().command else { panic!("another command") };
+            assert_eq!(args.mission.request().mission().unwrap().tasks().len(), tasks, "{given:?}");
+        }
+    }
+
+    #[cfg(feature = "ros2")]
+    #[test]
+    fn a_battery_is_read_only_from_a_given_topic() {
+        let options = trundle::ros2::Ros2Options::read("trundle", Some(0), Default::default(), &[]).unwrap();
+        let battery = |given: &[&str]| {
+            let Command::Ros2(args) = Cli::parse_from([&["trundle", "ros2"][..], given].concat()).command
+            else {
+                panic!("another command")
+            };
+            args.topics.settings(&options).battery
+        };
+        assert_eq!(battery(&[]), None);
+        assert_eq!(battery(&["--battery", "battery_state"]).as_deref(), Some("battery_state"));
+    }
+
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();

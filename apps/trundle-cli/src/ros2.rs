@@ -18,7 +18,8 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     let (mission, resumed) = first_mission(&args.request(), args.resume.as_deref(), args.stays())?;
     let wait = Duration::from_secs_f64(args.wait);
     let is_cancelled = || stop::is_requested(|| "the wait for topics".to_owned());
-    let connected = Ros2Robot::connect(&options, args.topics(&options), &mut robot, wait, is_cancelled)?;
+    let connected =
+        Ros2Robot::connect(&options, args.topics.settings(&options), &mut robot, wait, is_cancelled)?;
     let (node, link, body) = connected.into_parts();
     let mut setup = args.options.setup("ros2", &options.node.names.node, mission, robot)?;
     setup.is_operated = args.stays();
@@ -26,8 +27,7 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     let setup = args.live.with_zones(setup)?;
     let folder = logging::output_folder(&args.out)?;
     if !args.options.common.quiet {
-        let (node, mission) = (&options.node, setup.mission_line());
-        console::print(&format!("ROS 2 domain {}, node {}: {mission}.", node.domain, node.names.node));
+        console::print(&options.node.announcement(&setup.mission_line()));
     }
     let (line, progress) = console::progress(args.options.common.quiet);
     let log = if args.stays() { RunLog::brief() } else { RunLog::default() };
@@ -39,8 +39,7 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     };
     let run = run_in_real_time(&setup, start, &folder, checkpoint, log, front_end);
     line.finish_and_clear();
-    drop(page);
-    drop(node);
+    drop((page, node));
     let (run, timing) = run?;
     run_output::write(&setup, run, Some(&timing), folder, args.options.common.quiet)
 }

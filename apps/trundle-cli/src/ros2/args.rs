@@ -16,27 +16,9 @@ use trundle::ros2::body::BodySettings;
 #[command(after_help = "Example: trundle ros2 --ros-args -r odom:=wheel/odom -p use_sim_time:=true\n\n\
     Without a mission it waits for goals: NavigateToPose, goal_pose of RViz (docs/how-to/ros2.md).")]
 pub struct Ros2Args {
-    /// Colour images: `.../compressed`, or raw images.
-    #[arg(long, value_name = "TOPIC", default_value = "camera/color/image_raw/compressed")]
-    pub color: String,
-    /// Depth images: `.../compressedDepth`, or raw images of 16UC1 or 32FC1.
-    #[arg(long, value_name = "TOPIC", default_value = "camera/depth/image_raw/compressedDepth")]
-    pub depth: String,
-    /// Intrinsics of the colour camera.
-    #[arg(long, value_name = "TOPIC", default_value = "camera/color/camera_info")]
-    pub camera_info: String,
-    /// Intrinsics of a depth camera whose images are not registered to colour.
-    #[arg(long, value_name = "TOPIC")]
-    pub depth_info: Option<String>,
-    /// Gyro; if it has messages, it gives the heading in place of the odometry. `none`: not used.
-    #[arg(long, value_name = "TOPIC", default_value = "imu")]
-    pub imu: String,
-    /// A 2-D laser, instead of scans from depth images.
-    #[arg(long, value_name = "TOPIC")]
-    pub scan: Option<String>,
-    /// Battery: at a charge of 2 % or less the robot stops. Not for drivers that report 0 for an unknown charge.
-    #[arg(long, value_name = "TOPIC", hide_short_help = true)]
-    pub battery: Option<String>,
+    /// The robot's topics.
+    #[command(flatten)]
+    pub topics: TopicArgs,
     /// Network and names.
     #[command(flatten)]
     pub ros: RosArgs,
@@ -69,20 +51,46 @@ pub struct Ros2Args {
     pub out: OutputDirArg,
 }
 
-impl Ros2Args {
-    /// The robot's topics.
-    pub fn topics(&self, options: &Ros2Options) -> BodySettings {
+/// The topics of the robot.
+#[derive(Debug, Args)]
+pub struct TopicArgs {
+    /// Colour images: `.../compressed`, or raw images.
+    #[arg(long, value_name = "TOPIC", default_value = "camera/color/image_raw/compressed")]
+    pub color: String,
+    /// Depth images: `.../compressedDepth`, or raw images of 16UC1 or 32FC1.
+    #[arg(long, value_name = "TOPIC", default_value = "camera/depth/image_raw/compressedDepth")]
+    pub depth: String,
+    /// Intrinsics of the colour camera.
+    #[arg(long, value_name = "TOPIC", default_value = "camera/color/camera_info")]
+    pub camera_info: String,
+    /// Intrinsics of a depth camera whose images are not registered to colour.
+    #[arg(long, value_name = "TOPIC")]
+    pub depth_info: Option<String>,
+    /// Gyro; if it has messages, it gives the heading in place of the odometry. `none`: not used.
+    #[arg(long, value_name = "TOPIC", default_value = "imu")]
+    pub imu: String,
+    /// A 2-D laser, instead of scans from depth images.
+    #[arg(long, value_name = "TOPIC")]
+    pub scan: Option<String>,
+    /// Battery: at a charge of 2 % or less the robot stops. Not for drivers that report 0 for an unknown charge.
+    #[arg(long, value_name = "TOPIC", hide_short_help = true)]
+    pub battery: Option<String>,
+}
+
+impl TopicArgs {
+    /// The topics, and what the options of ROS 2 say about them.
+    pub fn settings(&self, options: &Ros2Options) -> BodySettings {
         let mut settings = BodySettings::of(options);
-        settings.color = self.color.clone();
-        settings.depth = self.depth.clone();
+        (settings.color, settings.depth) = (self.color.clone(), self.depth.clone());
         settings.camera_info = self.camera_info.clone();
         settings.depth_info = self.depth_info.clone();
         settings.imu = (self.imu != "none").then(|| self.imu.clone());
-        settings.scan = self.scan.clone();
-        settings.battery = self.battery.clone();
+        (settings.scan, settings.battery) = (self.scan.clone(), self.battery.clone());
         settings
     }
+}
 
+impl Ros2Args {
     /// Whether the run continues after its mission.
     pub fn stays(&self) -> bool {
         self.stay || self.live.is_operated() || self.request().is_empty()
@@ -92,28 +100,5 @@ impl Ros2Args {
     pub fn request(&self) -> MissionRequest {
         let goals = self.goal.iter().map(|goal| goal.0).collect();
         MissionRequest { goals, explore: self.explore, dock: false, file: self.mission.clone() }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::command_line::{Cli, Command};
-    use clap::Parser;
-    use trundle::ros2::Ros2Options;
-    use trundle::ros2::body::BodySettings;
-    use trundle::ros2::node::Networks;
-
-    fn topics(given: &[&str]) -> BodySettings {
-        let options = Ros2Options::read("trundle", Some(0), Networks::Loopback, &[]).unwrap();
-        let Command::Ros2(args) = Cli::parse_from([&["trundle", "ros2"][..], given].concat()).command else {
-            panic!("another command")
-        };
-        args.topics(&options)
-    }
-
-    #[test]
-    fn a_battery_is_read_only_from_a_given_topic() {
-        assert_eq!(topics(&[]).battery, None);
-        assert_eq!(topics(&["--battery", "battery_state"]).battery.as_deref(), Some("battery_state"));
     }
 }

@@ -132,23 +132,3 @@ impl MissionArgs {
         MissionRequest { goals, explore: self.explore, dock: self.dock, file: self.mission.clone() }
     }
 }
-
-#[cfg(all(test, feature = "ros2"))]
-mod tests {
-    use crate::command_line::{Cli, Command};
-    use clap::Parser;
-
-    #[test]
-    fn a_run_needs_a_mission_or_ros_2() {
-        let parse = |given: &[&str]| {
-            Cli::try_parse_from([&["trundle", "run", "--camera", "folder:/tmp"][..], given].concat())
-        };
-        let refusal = parse(&[]).unwrap_err().to_string();
-        assert!(refusal.contains("--goal <X,Y,DEG>") && refusal.contains("--ros2"), "{refusal}");
-        assert!(parse(&["--raw-images"]).is_err());
-        for (given, tasks) in [(&["--ros2"][..], 0), (&["--ros2", "--explore"][..], 2), (&["--dock"][..], 1)] {
-            let Command::Run(args) = parse(given).unwrap().command else { panic!("another command") };
-            assert_eq!(args.mission.request().mission().unwrap().tasks().len(), tasks, "{given:?}");
-        }
-    }
-}

@@ -15,9 +15,7 @@ pub fn serve(args: &SimArgs, name: &str) -> Result<Outcome, AppError> {
     let offered = OfferedBody { camera, base_from_camera, drive: DifferentialDrive::KOBUKI };
     let mut simulator = load_simulator(name, args.place.options(), config)?;
     if !args.common.quiet {
-        let (domain, drive) = (options.node.domain, "trundle ros2 --ros-args -p use_sim_time:=true");
-        console::print(&format!("A robot in '{name}' answers on ROS 2 domain {domain}. Drive it: {drive}"));
-        options.node.networks.discovery_hint().into_iter().for_each(console::print);
+        console::print(&options.node.robot_greeting(name));
     }
     let limit = args.driver.duration.unwrap_or(f64::INFINITY);
     serve_body(&options, args.ros_robot.raw_images, offered, &mut simulator, |time| {

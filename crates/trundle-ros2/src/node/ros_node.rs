@@ -33,6 +33,20 @@ impl NodeSettings {
     pub const fn new(names: Names, domain: u16, networks: Networks) -> Self {
         Self { names, domain, networks }
     }
+
+    /// Line for a person before a run with this node: its domain, its name, and the mission.
+    #[must_use]
+    pub fn announcement(&self, mission: &str) -> String {
+        format!("ROS 2 domain {}, node {}: {mission}.", self.domain, self.names.node)
+    }
+
+    /// Lines for a person about a simulated robot in `scene` behind this node: how to drive it, and how others find it.
+    #[must_use]
+    pub fn robot_greeting(&self, scene: &str) -> String {
+        let drive = "trundle ros2 --ros-args -p use_sim_time:=true";
+        let hint = self.networks.discovery_hint().map_or_else(String::new, |hint| format!("\n{hint}"));
+        format!("A robot in '{scene}' answers on ROS 2 domain {}. Drive it: {drive}{hint}", self.domain)
+    }
 }
 
 /// Largest domain id whose ports exist. Source: DDSI-RTPS, 9.6.1.
