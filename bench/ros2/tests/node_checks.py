@@ -23,7 +23,7 @@ class TransformWatch:
     def __init__(self, user):
         self.user, self.found, self.begin = user, {pair: [] for pair in GAPS_S}, user.now()
         # No message is lost while a part does not spin.
-        user.node.create_subscription(TFMessage, "/tf", self.take, 10_000)
+        user.node.create_subscription(TFMessage, "/tf", self.take, 1000)
 
     def is_over(self):
         return self.user.now() > self.begin + WATCH_S
