@@ -1,14 +1,13 @@
 //! Conversion of RGB-D images with their poses, and of a robot's other sensors: ROS bag, TUM folder or recording into another of these
 //! forms, and the recording of a camera into a TUM folder.
 
+mod bag;
+mod form;
+mod images;
 mod recorded_camera;
 
+pub use form::{Converted, SequenceForm};
 pub use recorded_camera::RecordedCamera;
-
-mod bag;
-mod images;
-
-pub use images::Converted;
 
 use crate::sequence::SequenceRequest;
 use crate::sequence_input::{SequenceInput, SequenceOptions};
@@ -16,31 +15,6 @@ use crate::sequence_run::{SequenceEvents, sequence_setup};
 use crate::{AppError, StepProgress, stop};
 use images::{each_image, finished};
 use trundle_io::{EncodedEvent, OutputFolder, TumFrame, TumWriter};
-
-/// The form that a sequence is converted into.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SequenceForm {
-    /// A TUM RGB-D folder.
-    TumFolder,
-    /// `bag.mcap`: a ROS 2 bag with colour as JPEG, depth in whole millimetres, camera_info, transforms, odometry, gyro, scans and ground
-    /// truth.
-    RosBag,
-    /// `recording.mcap`: a recording of trundle with all sensors and ground truth, which `trundle replay` runs.
-    Recording,
-}
-
-impl std::str::FromStr for SequenceForm {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, String> {
-        match name {
-            "tum" => Ok(Self::TumFolder),
-            "bag" => Ok(Self::RosBag),
-            "recording" => Ok(Self::Recording),
-            _ => Err("expected tum, bag or recording".to_owned()),
-        }
-    }
-}
 
 /// Name of a recording in its folder.
 const RECORDING_FILE: &str = "recording.mcap";

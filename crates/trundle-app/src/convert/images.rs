@@ -1,29 +1,9 @@
 //! The images of a sequence that are converted, and their number.
 
+use super::Converted;
 use crate::sequence_input::{PendingFrame, SequenceInput};
 use crate::{AppError, StepProgress, stop};
 use trundle_core::RgbdImage;
-
-/// Counts of a conversion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Converted {
-    /// Number of images.
-    pub images: usize,
-    /// Number of images that are damaged and left out.
-    pub skipped: usize,
-    /// Number of scans of a laser.
-    pub scans: usize,
-}
-
-impl std::fmt::Display for Converted {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} images, {} damaged and left out", self.images, self.skipped)?;
-        if self.scans > 0 {
-            write!(f, ", {} scans", self.scans)?;
-        }
-        Ok(())
-    }
-}
 
 /// Hands on each image that is whole.
 pub(super) fn each_image(

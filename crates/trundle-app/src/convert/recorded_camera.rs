@@ -1,6 +1,6 @@
 //! Images of a recorded camera as a TUM folder: a dump of a Kinect V2, a recording of a RealSense, a file of a camera stream.
 
-use super::{Converted, SequenceForm};
+use super::form::{Converted, SequenceForm};
 use crate::hardware::OpenCamera;
 use crate::sequence_input::SequenceOptions;
 use crate::{AppError, StepProgress, stop};

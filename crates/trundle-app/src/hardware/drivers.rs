@@ -300,6 +300,7 @@ fn stamp_maps() -> StampMapFactory {
 mod tests {
     use super::*;
     use std::fs;
+    use trundle_drivers::camera::native::Selection;
 
     /// A folder camera of 640 x 480 px whose colour camera has this readout time \[s\].
     fn camera(folder: &std::path::Path, readout: f64) -> OpenCamera {
@@ -327,6 +328,21 @@ mod tests {
         assert_eq!((own.fx(), own.readout()), (500.0, 0.02));
         let own = camera(folder.path(), 0.01).own_intrinsics(&robot).unwrap();
         assert_eq!((own.fx(), own.readout()), (500.0, 0.01));
+    }
+
+    #[test]
+    fn a_recording_neither_drives_a_robot_nor_is_taken_for_a_live_camera() {
+        let folder = tempfile::tempdir().unwrap();
+        let camera = camera(folder.path(), 0.0);
+        let refused = camera.require_live().unwrap_err().to_string();
+        let name = format!("folder:{}", folder.path().display());
+        assert!(refused.starts_with(&format!("camera {name} is a recording")), "{refused}");
+        assert!(refused.contains(&format!("`trundle convert {name} OUT`")), "{refused}");
+        assert!(camera.require_recording().is_ok());
+        for name in ["openni2:drive.oni", "openni2:DRIVE.ONI", "orbbec:drive.bag", "freenect:drive.oni"] {
+            let spec: CameraSpec = name.parse().unwrap();
+            assert!(matches!(&spec, CameraSpec::Native(_, Selection::File(_))), "{name}");
+        }
     }
 
     #[test]
