@@ -1,6 +1,7 @@
 //! A sequence as a ROS 2 bag.
 
-use super::images::{Converted, each_image, finished};
+use super::Converted;
+use super::images::{each_image, finished};
 use crate::sequence_input::SequenceInput;
 use crate::{AppError, StepProgress};
 use std::io::Write;
