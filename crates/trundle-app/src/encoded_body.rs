@@ -1,6 +1,6 @@
 //! A body whose events arrive in the encoding of a recording: any [`RobotBody`], a recording, or live hardware.
 
-use crate::{AppError, RunState, operator::OperatorRequest};
+use crate::{AppError, DisplayedState, operator::OperatorRequest};
 use trundle_core::{RobotBody, Twist2};
 use trundle_io::EncodedEvent;
 use trundle_runtime::{Answer, Job, Worker};
@@ -42,7 +42,7 @@ pub trait EncodedBody {
     fn true_contacts(&self) -> Option<u32>;
 
     /// Shows the state of the run to people near the robot, by lights and sounds. The motion must not depend on it.
-    fn show_state(&mut self, _run: &RunState<'_>) {}
+    fn show_state(&mut self, _run: &DisplayedState<'_>) {}
 
     /// Share of the events that was read, 0 to 1; `None` if their number is unknown.
     fn fraction_read(&self) -> Option<f64> {

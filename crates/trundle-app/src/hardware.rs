@@ -11,7 +11,7 @@ pub use device_list::{device_rows, udev_rules};
 pub use drivers::{Drivers, GyroOrigin, IntrinsicsSource, OpenCamera};
 
 use crate::real_time::{EventFeed, EventObserver, LiveBody, TimedEvent};
-use crate::{AppError, RunState};
+use crate::{AppError, DisplayedState};
 use state_signals::StateSignals;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -66,7 +66,7 @@ pub fn start_hardware(
         drivers.report()
     };
     let body = LiveBody::start(feed, Some(commands), stop)?;
-    Ok(body.with_state_display(Box::new(move |run: &RunState<'_>| locked(&shown).show(run))))
+    Ok(body.with_state_display(Box::new(move |run: &DisplayedState<'_>| locked(&shown).show(run))))
 }
 
 fn locked(signals: &Mutex<StateSignals>) -> MutexGuard<'_, StateSignals> {

@@ -7,8 +7,8 @@ use crate::run_mark::{RunMark, RunMarkMessage};
 use crate::run_messages::RunMessages;
 use crate::setup::mission_text;
 use crate::{
-    AppError, BestView, FinishedRun, Progress, RecordingContent, RecordingCost, RunLog, RunRecorder,
-    RunSetup, RunState,
+    AppError, BestView, DisplayedState, FinishedRun, Progress, RecordingContent, RecordingCost, RunLog,
+    RunRecorder, RunSetup,
 };
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -182,7 +182,7 @@ impl<'s> RunSession<'s> {
             self.tasks_done = mission.ended.iter().filter(|record| record.end == TaskEnd::Done).count();
         }
         let (is_held, tasks_done) = (self.robot.hold().is_some(), self.tasks_done);
-        body.show_state(&RunState { state, is_finished, is_held, tasks_done });
+        body.show_state(&DisplayedState { state, is_finished, is_held, tasks_done });
     }
 
     /// Records the body's contacts, if it counts them.

@@ -13,7 +13,7 @@
 //! | cleaning end | a task is done, for example a goal is reached |
 //! | error | the light turns red |
 
-use crate::RunState;
+use crate::DisplayedState;
 use trundle_drivers::kobuki::Accessories;
 use trundle_drivers::kobuki::protocol::{Led, Outputs, SoundSequence};
 use trundle_runtime::{DriveState, ReasonKind};
@@ -26,7 +26,7 @@ struct Shown {
 }
 
 /// The light of a state of the run.
-fn light_of(run: &RunState<'_>) -> Led {
+fn light_of(run: &DisplayedState<'_>) -> Led {
     let reason = run.state.reason();
     if reason.is_some_and(|reason| reason.kind() == ReasonKind::Interrupted) {
         Led::OFF
@@ -60,7 +60,7 @@ impl StateSignals {
         Self { base, shown: None }
     }
 
-    pub(super) fn show(&mut self, run: &RunState<'_>) {
+    pub(super) fn show(&mut self, run: &DisplayedState<'_>) {
         let now = Shown { light: light_of(run), tasks_done: run.tasks_done };
         let before = self.shown.replace(now);
         if before.is_none_or(|before| before.light != now.light) {

@@ -1,7 +1,7 @@
 //! The body of a real-time run: it joins the control thread with the threads of the sensors and the workers.
 
 use super::{BackgroundBody, BodyTiming, QueueLength, RealTimeReport, ThreadLoad, TimedEvent};
-use crate::{AppError, EncodedBody, FinishedRun, RunInput, RunState, StateDisplay};
+use crate::{AppError, DisplayedState, EncodedBody, FinishedRun, RunInput, StateDisplay};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -148,7 +148,7 @@ impl EncodedBody for ThreadedBody {
         Some(answer)
     }
 
-    fn show_state(&mut self, run: &RunState<'_>) {
+    fn show_state(&mut self, run: &DisplayedState<'_>) {
         if let Some(display) = &mut self.state_display {
             display(run);
         }

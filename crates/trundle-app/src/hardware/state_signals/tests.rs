@@ -25,8 +25,8 @@ fn states() -> Vec<(DriveState, Led, Led)> {
     ]
 }
 
-fn run_state(state: &DriveState, is_finished: bool, is_held: bool, tasks_done: usize) -> RunState<'_> {
-    RunState { state, is_finished, is_held, tasks_done }
+fn run_state(state: &DriveState, is_finished: bool, is_held: bool, tasks_done: usize) -> DisplayedState<'_> {
+    DisplayedState { state, is_finished, is_held, tasks_done }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use trundle_runtime::DriveState;
 
 /// The state of a run after a step, for lights and sounds.
 #[derive(Debug, Clone, Copy)]
-pub struct RunState<'r> {
+pub struct DisplayedState<'r> {
     /// State of the robot.
     pub state: &'r DriveState,
     /// Whether the mission is over; `state` then holds its outcome.
@@ -16,4 +16,4 @@ pub struct RunState<'r> {
 }
 
 /// Shows the state of a run. Called after each step, on the control thread: it must not wait.
-pub type StateDisplay = Box<dyn FnMut(&RunState<'_>) + Send>;
+pub type StateDisplay = Box<dyn FnMut(&DisplayedState<'_>) + Send>;
