@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The supply: licences, sources and published faults of the dependencies, by cargo-deny and npm. Parts that need the network or a missing
-# tool are skipped by name.
+# The supply: licences, sources and published faults of the dependencies, by cargo-deny and npm, and the list of parts of the program.
+# Checks that need the network or a missing tool are skipped by name.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 failed=0
@@ -36,6 +36,20 @@ else
     else
         echo "skipped: advisories of the crates (the database cannot be had: $(grep -m 1 -i "fatal\|error" "$log" | cut -c1-120))"
     fi
+fi
+
+# The list of parts of the program (SBOM), by the published schema of CycloneDX and by cargo's own tree.
+sbom_tools=$PWD/target/supply-sbom
+if ! command -v python3 >/dev/null || { [ ! -d "$sbom_tools/fastjsonschema" ] &&
+    ! python3 -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes --target "$sbom_tools" \
+        -r bench/supply/requirements-sbom.txt >"$log" 2>&1; }; then
+    echo "skipped: the list of parts (the schema of CycloneDX cannot be had: python3 or PyPI is missing)"
+elif cargo xtask sbom &&
+    cargo tree --locked --offline --edges normal --prefix none --package trundle-cli --features ros2,mqtt,foxglove,tls |
+    PYTHONPATH=$sbom_tools python3 bench/supply/check_sbom.py target/sbom/trundle-cli.cdx.json "$sbom_tools/cyclonedx/schema/_res"; then
+    echo "ok   list of parts of the program"
+else
+    failed=1
 fi
 
 audit() {

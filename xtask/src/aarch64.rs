@@ -93,17 +93,24 @@ pub fn run(root: &Path) -> Verdict {
             return Ok(false);
         }
     }
-    if !tools.cargo(root, &["build", "--release", "--target", TARGET, "--package", "trundle-cli"])? {
-        return Err(format!("the program does not build for {TARGET}"));
-    }
-    compare(root, &tools)
+    let program = release_trundle(root)?;
+    compare(root, &tools, program)
 }
 
-/// Runs the program on this computer and under qemu. Returns whether the folders hold the same bytes.
-fn compare(root: &Path, tools: &Tools) -> Verdict {
+/// Builds the release program for aarch64, with all its features; its path.
+pub fn release_trundle(root: &Path) -> Result<PathBuf, String> {
+    let build = ["build", "--release", "--target", TARGET, "--package", "trundle-cli"];
+    if !program::cargo(root, &[&build[..], &["--features", program::FEATURES]].concat(), &[LINKER_VARIABLE])?
+    {
+        return Err(format!("the program does not build for {TARGET}"));
+    }
+    Ok(program::target(root)?.join(TARGET).join("release").join("trundle"))
+}
+
+/// Runs the program on this computer and `other` under qemu. Returns whether the folders hold the same bytes.
+fn compare(root: &Path, tools: &Tools, other: PathBuf) -> Verdict {
     let scratch = program::scratch(root, "aarch64-runs")?;
     let own = program::release_trundle(root)?;
-    let other = program::target(root)?.join(TARGET).join("release").join("trundle");
     let emulated: [PathBuf; 4] = [tools.emulator.into(), "-L".into(), LIBRARIES.into(), other];
     let mut same = true;
     for (name, command) in RUNS {

@@ -1,4 +1,4 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | book | commands | golden | packages | dist | deb | semver | reproduce | results | gallery | pictures | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | states | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | book | commands | golden | packages | dist | deb | sbom | semver | reproduce | results | gallery | pictures | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | states | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod aarch64;
@@ -53,7 +53,7 @@ enum XtaskCommand {
         #[arg(long, hide = true)]
         grow: bool,
     },
-    /// Run the tested commands of docs, build the book with mdbook, and check its links. The build is skipped if mdbook is missing.
+    /// Run the tested commands of docs, build the book with mdbook, check its links and search in it. The build is skipped if mdbook is missing.
     Book,
     /// Write docs/commands.md from the help of the release program.
     Commands,
@@ -76,14 +76,20 @@ enum XtaskCommand {
         profile: String,
     },
     /// Build the program of a release; print its size and checksum.
-    Dist,
+    Dist {
+        /// Also build it with the default features, and print that size.
+        #[arg(long)]
+        sizes: bool,
+    },
     /// Build the Debian package, check its content, unpack it and run its program. Skipped if tools are missing.
     Deb(dist::deb::Options),
+    /// Write the list of parts (SBOM) of the program of a release as CycloneDX.
+    Sbom,
     /// Compare the public interfaces with those of the last tag. Skipped without a tag or cargo-semver-checks.
     Semver,
     /// Build the committed sources at two paths: both programs must have the same bytes. Takes two builds from nothing.
     Reproduce,
-    /// Pack every crate as for a registry, without network; check the packages and the facade's features.
+    /// Run the publication of every crate without an upload, or only pack them without a network; check the packages and the facade's features.
     Packages {
         /// Build every feature of the facade alone, not only the algorithms'.
         #[arg(long)]
@@ -100,7 +106,7 @@ enum XtaskCommand {
     },
     /// Write docs/gallery.md and its charts from results/*.json.
     Gallery {
-        /// Repeat the measurements of the page first: all of them, or the named ones.
+        /// Repeat the measurements of the page first: all of them, with its pictures, or the named ones.
         #[arg(long, value_name = "NAME", num_args = 0..)]
         measure: Option<Vec<String>>,
     },
@@ -161,8 +167,9 @@ fn main() -> ExitCode {
         XtaskCommand::Golden { update, only, profile } => {
             golden::run(&root, &golden::Options { update, only, profile })
         }
-        XtaskCommand::Dist => dist::run(&root, None),
+        XtaskCommand::Dist { sizes } => dist::run(&root, sizes),
         XtaskCommand::Deb(options) => dist::deb::run(&root, &options),
+        XtaskCommand::Sbom => dist::sbom::run(&root),
         XtaskCommand::Semver => semver::run(&root),
         XtaskCommand::Reproduce => dist::reproduce::run(&root),
         XtaskCommand::Packages { every_feature } => packages::run(&root, every_feature),

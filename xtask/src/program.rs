@@ -3,6 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+/// Features of the program of a release: all that need no library of the system.
+pub const FEATURES: &str = "ros2,mqtt,foxglove,tls";
+
 /// Runs `cargo` with `args` (and `env`) in the workspace, without standard input. Returns whether it succeeded.
 pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<bool, String> {
     let mut command = Command::new(cargo_path());
@@ -13,8 +16,7 @@ pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<bool, S
 
 /// Builds the program in a profile (`release`, `dev`); its path. The program of a release has all its features.
 pub fn trundle(root: &Path, profile: &str) -> Result<PathBuf, String> {
-    let features: &[&str] =
-        if profile == "release" { &["--features", "ros2,mqtt,foxglove,tls"] } else { &[] };
+    let features: &[&str] = if profile == "release" { &["--features", FEATURES] } else { &[] };
     let build = ["build", "--profile", profile, "--package", "trundle-cli"];
     if !cargo(root, &[&build, features].concat(), &[])? {
         return Err(format!("the program does not build in profile {profile}"));
@@ -102,7 +104,8 @@ pub fn answers(program: &str, argument: &str) -> bool {
     process.status().is_ok_and(|status| status.success())
 }
 
-fn cargo_path() -> std::ffi::OsString {
+/// The cargo that runs this program.
+pub fn cargo_path() -> std::ffi::OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 

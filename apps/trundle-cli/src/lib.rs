@@ -36,14 +36,13 @@ mod vocabulary;
 use clap::{CommandFactory, FromArgMatches};
 use command_line::{Cli, Command};
 use outcome::Outcome;
-use std::ffi::OsString;
 use trundle::app::{AppError, on_threads, stop};
 use trundle::io::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
 
 /// Runs the command line of these arguments, the program's name first. Returns the exit code of the process. A command handles Ctrl-C and
 /// SIGTERM, and starts the log, so the process must do nothing else.
-pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let matches = with_negative_numbers(Cli::command()).try_get_matches_from(arguments);
+pub fn run(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> u8 {
+    let matches = command().try_get_matches_from(arguments);
     let (cli, matches) = match matches.and_then(|found| Ok((Cli::from_arg_matches(&found)?, found))) {
         Ok(parsed) => parsed,
         Err(usage) => {
@@ -62,6 +61,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         }
         Err(error) => outcome::end(Err(error), &[]),
     }
+}
+
+/// The definition of the command line.
+pub fn command() -> clap::Command {
+    with_negative_numbers(Cli::command())
 }
 
 /// Handles Ctrl-C: a request to stop for commands with long loops, the end of the program for others.

@@ -41,8 +41,7 @@ pub fn print_completions(args: &CompletionsArgs, mut program: clap::Command) -> 
 pub fn write_man_pages(args: &ManArgs, program: clap::Command) -> Result<Outcome, AppError> {
     let mut command = program.disable_help_subcommand(true);
     command.build();
-    write_pages(&command, &args.dir)?;
-    Ok(Outcome::Reached)
+    write_pages(&command, &args.dir).map(|()| Outcome::Reached)
 }
 
 /// The page of a command, and those of its subcommands.

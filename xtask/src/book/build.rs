@@ -1,24 +1,26 @@
-//! The build of the book by mdbook, if it is installed.
+//! The build of the book by mdbook, its links and its search; skipped by name without mdbook.
 
 use super::html_links;
-use crate::program;
+use crate::program::{self, answers};
 use crate::workspace::Verdict;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Builds the book and checks the links of its pages. Without mdbook the build is skipped.
+/// The program that `bench/book/get-mdbook.sh` gets, below the build results.
+const TOOL: &str = "book-tools/bin/mdbook";
+/// The script that searches the book.
+const SEARCH: &str = "bench/book/search.mjs";
+
+/// Builds the book, checks the links of its pages and searches in it. Without mdbook the build is skipped.
 pub fn run(root: &Path) -> Verdict {
-    if Command::new("mdbook").arg("--version").output().is_err() {
+    let Some(mdbook) = mdbook(root)? else {
         println!(
-            "skipped: the build of the book, because mdbook is not installed (cargo install mdbook --locked)"
+            "skipped: the build of the book, because mdbook is missing (bash bench/book/get-mdbook.sh, or cargo install mdbook --locked)"
         );
         return Ok(true);
-    }
+    };
     let folder = program::scratch(root, "book")?;
-    let mut mdbook = Command::new("mdbook");
-    mdbook.args(["build", "--dest-dir"]).arg(&folder).current_dir(root).stdin(Stdio::null());
-    let status = mdbook.status().map_err(|e| format!("cannot start mdbook: {e}"))?;
-    if !status.success() {
+    if !ends_well(Command::new(&mdbook).args(["build", "--dest-dir"]).arg(&folder).current_dir(root))? {
         return Ok(false);
     }
     let broken = html_links::broken(&folder)?;
@@ -26,5 +28,28 @@ pub fn run(root: &Path) -> Verdict {
         println!("{link}");
     }
     println!("book: {} broken links, see {}", broken.len(), folder.join("index.html").display());
-    Ok(broken.is_empty())
+    Ok(search(root, &folder)? && broken.is_empty())
+}
+
+/// The installed mdbook, or the one of the script; `None` without both.
+fn mdbook(root: &Path) -> Result<Option<PathBuf>, String> {
+    let tool = program::target(root)?.join(TOOL);
+    let candidates = [PathBuf::from("mdbook"), tool];
+    Ok(candidates.into_iter().find(|program| answers(&program.display().to_string(), "--version")))
+}
+
+/// Whether a search for each title finds its page; skipped by name without Node.
+fn search(root: &Path, folder: &Path) -> Verdict {
+    if !answers("node", "--version") {
+        println!("skipped: the search in the book needs node: apt-get install nodejs");
+        return Ok(true);
+    }
+    ends_well(Command::new("node").arg(root.join(SEARCH)).arg(folder))
+}
+
+/// Whether a program ends with the exit code 0.
+fn ends_well(command: &mut Command) -> Verdict {
+    let status = command.stdin(Stdio::null()).status();
+    let name = command.get_program().display();
+    Ok(status.map_err(|e| format!("cannot start {name}: {e}"))?.success())
 }

@@ -5,6 +5,7 @@ mod commands;
 mod html_links;
 mod page_run;
 pub mod repository_links;
+mod script;
 
 use crate::workspace::Verdict;
 use crate::{command_reference, program};

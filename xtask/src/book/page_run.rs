@@ -1,9 +1,10 @@
 //! One page's commands in an empty folder.
 
+use super::script;
 use crate::program;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::time::Instant;
 
 /// Stands for any number of lines in an expected output.
@@ -28,21 +29,17 @@ impl PageRun {
         Ok(Self { page: page.to_owned(), folder, path, output: String::new() })
     }
 
-    /// Runs a script up to its first failing command. The inner error is the exit code with the output.
+    /// Runs a script up to its first failing command, with the page's folder as home. The inner error is the end with the output.
     pub fn script(&mut self, text: &str) -> Result<Result<(), String>, String> {
         let start = Instant::now();
         let mut shell = Command::new("sh");
-        shell.args(["-e", "-u", "-c", text]).current_dir(&self.folder).env("PATH", &self.path);
-        let result = shell.stdin(Stdio::null()).output().map_err(|e| format!("cannot start sh: {e}"))?;
-        let (out, err) = (String::from_utf8_lossy(&result.stdout), String::from_utf8_lossy(&result.stderr));
-        self.output = format!("{out}{err}");
+        shell.args(["-e", "-u", "-c", text]).current_dir(&self.folder);
+        shell.env("PATH", &self.path).env("HOME", &self.folder);
+        let end = script::run(shell)?;
+        self.output = end.output;
         let seconds = start.elapsed().as_secs_f64();
         println!("{seconds:8.1} s  {}: {}", self.page, text.lines().next().unwrap_or(""));
-        if result.status.success() {
-            return Ok(Ok(()));
-        }
-        let code = result.status.code().map_or("none (killed)".into(), |code| code.to_string());
-        Ok(Err(format!("exit code {code}, expected 0; the output:\n{}", self.output)))
+        Ok(end.failure.map_or(Ok(()), |why| Err(format!("{why}; the output:\n{}", self.output))))
     }
 
     /// Compares expected lines with the last output: the output has them in this order. Widths of blanks do not count.

@@ -1,7 +1,7 @@
 //! The Debian package: built, its content checked, unpacked, and its program run.
 
 use super::{build, deb_content, sha256};
-use crate::aarch64::TARGET;
+use crate::aarch64::{self, TARGET};
 use crate::program::{self, answers, output};
 use crate::workspace::Verdict;
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ pub struct Options {
     #[arg(long)]
     arm64: bool,
     /// Build profile of the program: dist, or release, which `.ci/run` has built already and which no user gets.
-    #[arg(long, default_value = super::PROFILE, conflicts_with = "arm64")]
+    #[arg(long, default_value = super::PROFILE, value_parser = [super::PROFILE, "release"])]
     profile: String,
 }
 
@@ -46,7 +46,7 @@ pub fn run(root: &Path, options: &Options) -> Verdict {
     for (tool, _, remedy) in &missing {
         println!("  skipped: the Debian package needs {tool}: {remedy}");
     }
-    let has_target = !is_arm64 || crate::aarch64::builds();
+    let has_target = !is_arm64 || aarch64::builds();
     if !has_target {
         println!(
             "  skipped: the Debian package of arm64 needs the compiler of {TARGET} (cargo xtask aarch64)"
@@ -55,12 +55,13 @@ pub fn run(root: &Path, options: &Options) -> Verdict {
     if !missing.is_empty() || !has_target {
         return Ok(true);
     }
-    let own = if options.profile == super::PROFILE {
-        build(root, None)
-    } else {
-        program::trundle(root, &options.profile)
-    }?;
-    let program = if is_arm64 { build(root, Some(TARGET))? } else { own.clone() };
+    let is_dist = options.profile == super::PROFILE;
+    let own = if is_dist { build(root, None) } else { program::trundle(root, &options.profile) }?;
+    let program = match (is_arm64, is_dist) {
+        (false, _) => own.clone(),
+        (true, true) => build(root, Some(TARGET))?,
+        (true, false) => aarch64::release_trundle(root)?,
+    };
     collect(root, &own, &program.with_file_name("deb"))?;
     let package = pack(root, options)?;
     println!("{}\nsha256: {}", package.display(), sha256(&package)?);

@@ -3,8 +3,9 @@
 pub mod deb;
 mod deb_content;
 pub mod reproduce;
+pub mod sbom;
 
-use crate::program;
+use crate::program::{self, FEATURES};
 use crate::workspace::Verdict;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -15,12 +16,14 @@ const PROFILE: &str = "dist";
 /// `results/program-size.json` and some room.
 const MAX_SIZE_MB: f64 = 28.0;
 
-/// Builds the program and prints its size and checksum. Returns whether it is small enough.
-pub fn run(root: &Path, target: Option<&str>) -> Verdict {
-    let program = build(root, target)?;
-    let bytes =
-        std::fs::metadata(&program).map_err(|e| format!("cannot read {}: {e}", program.display()))?.len();
-    let size_mb = bytes as f64 / 1e6;
+/// Builds the program and prints its size and checksum; with `sizes`, first its size with the default features, as `cargo install` builds
+/// it. Returns whether the program of a release is small enough.
+pub fn run(root: &Path, sizes: bool) -> Verdict {
+    if sizes {
+        println!("default features: {:.2} MB", size_mb(&build_with(root, None, "")?)?);
+    }
+    let program = build(root, None)?;
+    let size_mb = size_mb(&program)?;
     println!(
         "{}\nsize: {size_mb:.2} MB, at most {MAX_SIZE_MB} MB\nsha256: {}",
         program.display(),
@@ -29,18 +32,21 @@ pub fn run(root: &Path, target: Option<&str>) -> Verdict {
     Ok(size_mb <= MAX_SIZE_MB)
 }
 
+/// Size of a file \[MB\].
+fn size_mb(file: &Path) -> Result<f64, String> {
+    let data = std::fs::metadata(file).map_err(|e| format!("cannot read {}: {e}", file.display()))?;
+    Ok(data.len() as f64 / 1e6)
+}
+
 /// Builds the program of a release for this computer or for `target`; its path.
 pub fn build(root: &Path, target: Option<&str>) -> Result<PathBuf, String> {
-    let mut args = vec![
-        "build",
-        "--profile",
-        PROFILE,
-        "--locked",
-        "--package",
-        "trundle-cli",
-        "--features",
-        "ros2,mqtt,foxglove,tls",
-    ];
+    build_with(root, target, FEATURES)
+}
+
+/// Builds the program with these features beside the default ones, in the profile of a release.
+fn build_with(root: &Path, target: Option<&str>, features: &str) -> Result<PathBuf, String> {
+    let mut args = vec!["build", "--profile", PROFILE, "--locked", "--package", "trundle-cli"];
+    args.extend(["--features", features]);
     args.extend(target.into_iter().flat_map(|target| ["--target", target]));
     let flags = flags(root)?;
     let env = [("RUSTFLAGS", flags.as_str()), ("CARGO_INCREMENTAL", "0"), crate::aarch64::LINKER_VARIABLE];
@@ -89,6 +95,20 @@ mod tests {
         );
         std::fs::remove_file(&file).unwrap();
         assert!(sha256(&file).is_err());
+    }
+
+    #[test]
+    fn the_container_has_the_program_of_a_release() {
+        let file = crate::workspace::root().join("packaging/container/Containerfile");
+        let text = std::fs::read_to_string(file).unwrap();
+        let build =
+            format!("cargo build --profile {PROFILE} --locked --package trundle-cli --features {FEATURES}\n");
+        assert!(text.contains(&build), "expected `{}` in {text}", build.trim());
+        assert!(text.contains(&format!("/target/{PROFILE}/trundle ")), "{text}");
+        let manifest: toml::Table =
+            std::fs::read_to_string(crate::workspace::root().join("Cargo.toml")).unwrap().parse().unwrap();
+        let version = manifest["workspace"]["package"]["rust-version"].as_str().unwrap();
+        assert!(text.contains(&format!("/rust:{version}-")), "Rust {version} in {text}");
     }
 
     #[test]

@@ -18,12 +18,12 @@ pub const PAGE: &str = "docs/gallery.md";
 const HEAD: &str = "# Gallery
 
 Written by `cargo xtask gallery` from `results/*.json`. `cargo xtask gallery --measure` first repeats the measurements, which takes
-some hours; `--measure NAME` repeats one. `cargo xtask pictures` draws the pictures. The columns are those of the [results](results.md): figures in **bold** miss their goal, the
+some hours, and draws the pictures; `--measure NAME` repeats one measurement, `cargo xtask pictures` draws the pictures alone. The columns are those of the [results](results.md): figures in **bold** miss their goal, the
 ratio says how many times better than the peer, and a peer marked * is a published figure, not one of the same run.
 ";
 
-/// Writes the page and its charts. With `measured`, first repeats these measurements, or all of the page if the list is empty. Returns
-/// whether all of them gave their figures; the page is written with those that did.
+/// Writes the page and its charts. With `measured`, first repeats these measurements, or if the list is empty all of the page and draws
+/// its pictures. Returns whether all of them gave their figures; the page is written with those that did.
 pub fn run(root: &Path, measured: Option<&[String]>) -> Verdict {
     let all: Vec<String> =
         SECTIONS.iter().flat_map(|s| s.measurements).map(|name| (*name).to_owned()).collect();
@@ -32,13 +32,14 @@ pub fn run(root: &Path, measured: Option<&[String]>) -> Verdict {
         return Err(format!("--measure {unknown}: the gallery shows {}", all.join(", ")));
     }
     let failures: Vec<String> = names.iter().filter_map(|name| repeat(root, name).err()).collect();
+    let are_drawn = measured.is_none_or(|names| !names.is_empty()) || pictures::draw(root, &[])?;
     let measurements = results::read(root)?;
     charts::draw(root, &measurements, &root.join(charts::FOLDER))?;
     let text = render(&measurements)?;
     std::fs::write(root.join(PAGE), &text).map_err(|e| format!("cannot write {PAGE}: {e}"))?;
     println!("wrote {PAGE} and {} charts", charts::all(&measurements)?.len());
     failures.iter().for_each(|failure| println!("not measured: {failure}"));
-    Ok(failures.is_empty())
+    Ok(failures.is_empty() && are_drawn)
 }
 
 /// Repeats a measurement.

@@ -4,8 +4,19 @@ use super::finding::{Finding, Rule};
 use super::tree::{File, Tree};
 
 /// First folders of paths that are checked.
-const FOLDERS: [&str; 9] =
-    ["crates/", "apps/", "bench/", "data/", "docs/", "xtask/", "fuzz/", "results/", ".ci/"];
+const FOLDERS: [&str; 11] = [
+    "crates/",
+    "apps/",
+    "bench/",
+    "data/",
+    "docs/",
+    "xtask/",
+    "fuzz/",
+    "packaging/",
+    "python/",
+    "results/",
+    ".ci/",
+];
 
 /// Checks every document.
 pub fn check(tree: &Tree) -> Vec<Finding> {
@@ -21,6 +32,7 @@ fn missing(tree: &Tree, file: &File) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (i, line) in file.text.lines().enumerate() {
         for span in line.split('`').skip(1).step_by(2) {
+            let span = span.strip_prefix("bash ").unwrap_or(span);
             let path = span.split([' ', ':', '#']).next().unwrap_or(span);
             let is_path = FOLDERS.iter().any(|folder| path.starts_with(folder));
             let is_pattern =
@@ -41,10 +53,9 @@ mod tests {
 
     #[test]
     fn files_that_are_not_there_are_found() {
-        let text =
-            "`docs/a.md`, `docs/gone.md`, `results/*.json`, `crates/x/src/lib.rs:3`, `docs/`, `out/x`\n";
+        let text = "`docs/a.md`, `docs/gone.md`, `results/*.json`, `crates/x/src/lib.rs:3`, `docs/`, `out/x`, `bash bench/gone.sh x`\n";
         let found = check(&tree(&[("docs/a.md", text), ("crates/x/src/lib.rs", "")]));
-        assert_eq!(found.len(), 1);
-        assert!(found[0].message.contains("docs/gone.md"));
+        let messages: Vec<&str> = found.iter().map(|finding| finding.message.as_str()).collect();
+        assert_eq!(messages, ["docs/gone.md is not there", "bench/gone.sh is not there"]);
     }
 }

@@ -1,16 +1,36 @@
-//! The threat model and the safety case name tests that exist.
+//! The threat model and the safety case name tests that exist, and each row of the threat model names one, or says that nothing is there.
 
 use super::finding::Finding;
 use super::tree::Tree;
 
 /// The documents whose code spans in the form of a test's name are checked.
-const DOCUMENTS: [&str; 2] = ["docs/explanation/threat-model.md", "docs/explanation/safety-case.md"];
+const DOCUMENTS: [&str; 2] = [THREAT_MODEL, "docs/explanation/safety-case.md"];
+/// The document whose tables have a defence and its test in their last two columns.
+const THREAT_MODEL: &str = "docs/explanation/threat-model.md";
+/// How a row says that there is no defence.
+const NO_DEFENCE: &str = "**nothing";
 /// Smallest number of underscores at which a span is the name of a test; names of options and files have fewer. Source: ours.
 const MIN_UNDERSCORES: usize = 3;
 
 /// Checks the documents.
 pub fn check(tree: &Tree) -> Vec<Finding> {
-    DOCUMENTS.iter().flat_map(|document| check_document(tree, document)).collect()
+    let cited = DOCUMENTS.iter().flat_map(|document| check_document(tree, document));
+    cited.chain(tree.file(THREAT_MODEL).into_iter().flat_map(|file| untested(&file.text))).collect()
+}
+
+/// A finding for each row of a defence without a test.
+fn untested(text: &str) -> Vec<Finding> {
+    let is_untested = |row: &str| {
+        let cells: Vec<&str> = row.trim().trim_matches('|').split(" | ").collect();
+        let [.., defence, test] = cells[..] else { return false };
+        row.starts_with("| ") && !test.contains('`') && !defence.contains(NO_DEFENCE)
+    };
+    let lines: Vec<&str> = text.lines().collect();
+    // The line below a heading is `|---|---|`.
+    let is_heading = |i: usize| lines.get(i + 1).is_some_and(|next| next.starts_with("|-"));
+    let rows = lines.iter().enumerate().filter(|(i, row)| !is_heading(*i) && is_untested(row));
+    let message = format!("a row names a test, script or command, or says {NO_DEFENCE}");
+    rows.map(|(i, _)| Finding::error(THREAT_MODEL, i + 1, message.clone())).collect()
 }
 
 fn check_document(tree: &Tree, document: &str) -> Vec<Finding> {
@@ -44,6 +64,13 @@ fn is_test(tree: &Tree, name: &str) -> bool {
 mod tests {
     use super::*;
     use crate::tidy::tree::tests::tree;
+
+    #[test]
+    fn a_defence_without_a_test_is_found() {
+        let rows = "| who | stopped by | test |\n|---|---|---|\n| a | b | `c_d_e_f` |\n| a | **nothing: x** | |\n| a | b | |\ntext | b | |\n";
+        let lines: Vec<usize> = untested(rows).iter().map(|finding| finding.line).collect();
+        assert_eq!(lines, [5]);
+    }
 
     #[test]
     fn tests_that_are_gone_are_found() {

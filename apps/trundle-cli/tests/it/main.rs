@@ -8,6 +8,8 @@ mod config;
 mod demo;
 mod dock;
 mod doctor;
+#[cfg(all(feature = "ros2", feature = "mqtt", feature = "foxglove", feature = "tls"))]
+mod documented_commands;
 mod endings;
 mod eval_trajectory;
 mod experiment_shards;

@@ -1,6 +1,6 @@
 //! Several viewers: one is in control, others view, and a slow one delays no other.
 
-use crate::browser::Browser;
+use crate::browser::{Browser, fetch};
 use crate::live_run::LiveRun;
 use serde_json::json;
 use std::time::{Duration, Instant};
@@ -79,12 +79,23 @@ fn one_viewer_too_many_is_told_so_and_a_place_that_was_left_is_free() {
     let mut late = Browser::connect(&run, None).unwrap();
     late.hello(run.token(Access::Drive), "late");
     assert_eq!(late.wait_for_close(), (1013, "too many viewers: close another page".to_owned()));
+    assert!(stop_by_request(&run).starts_with("HTTP/1.1 200"), "STOP needs no place among the viewers");
     viewers.pop();
     let start = Instant::now();
     while viewers[0].wait_for("state")["viewers"] != 23 {
         assert!(start.elapsed() < Duration::from_secs(10), "a viewer that went is counted");
     }
     Browser::enter(&run, Access::Drive, "late");
+}
+
+/// The head of the answer to STOP by a request of its own.
+fn stop_by_request(run: &LiveRun) -> String {
+    let address = run.page.address();
+    let (host, origin) = (address.to_string(), format!("http://{address}"));
+    let bearer = format!("Bearer {}", run.token(Access::Drive));
+    let headers =
+        [("Host", host.as_str()), ("Origin", &origin), ("Authorization", &bearer), ("Content-Length", "0")];
+    fetch(address, "POST /stop", &headers).0
 }
 
 #[test]
