@@ -30,7 +30,7 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
         console::print(&options.node.announcement(&setup.mission_line()));
     }
     let (line, progress) = console::progress(args.options.common.quiet);
-    let log = if args.stays() { RunLog::brief() } else { RunLog::default() };
+    let log = RunLog::of_run(&setup);
     let (page, front_end) = args.live.front_ends(&setup, progress, Some(link), true)?;
     let checkpoint = args.options.checkpoint.as_deref();
     let start = |events, _place| {

@@ -52,8 +52,7 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
         // A refused run does not change the checkpoint.
         keep_other_checkpoint(checkpoint, args.mission.resume.as_deref()).map(|()| body)
     };
-    // A robot that waits for goals may do so for days.
-    let log = if setup.mission.tasks().is_empty() { RunLog::brief() } else { RunLog::default() };
+    let log = RunLog::of_run(setup);
     let run = run_in_real_time(setup, start, &folder, checkpoint, log, front_end);
     line.finish_and_clear();
     drop(page);

@@ -1,6 +1,6 @@
 //! The log of a run for evaluation and pictures: poses, truth, commands, states.
 
-use crate::{BodyLog, PoseSample};
+use crate::{BodyLog, PoseSample, RunSetup};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Pose2, PoseEstimate, SensorEvent, Stamp, Twist2};
 use trundle_runtime::{DriveState, Reason, StepReport, TransitionReason};
@@ -37,9 +37,25 @@ pub struct RunLog {
     pub state: DriveState,
     /// Each change of the state, or of the kind of its reason, as in the program's log.
     pub changes: Vec<StateChange>,
-    /// Whether only the last minute is stored.
-    is_brief: bool,
+    extent: Extent,
 }
+
+/// Entries of a log that are kept.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Extent {
+    /// All.
+    #[default]
+    Whole,
+    /// Those of the last minutes, and of the time before one per second.
+    Thinned,
+    /// Those of the last minute.
+    LastMinute,
+}
+
+/// Length of the whole part of a thinned log \[s\]. Source: ours; the time line of the live page has the same length.
+const WHOLE_PART_S: f64 = 600.0;
+/// Time between two entries of the thinned part \[s\]: poses, truth and commands of an hour have 0.6 MB. Source: ours.
+const THINNED_PERIOD_S: f64 = 1.0;
 
 /// Length of a brief log \[s\]. Older entries are dropped. Source: ours.
 const BRIEF_LOG_S: f64 = 60.0;
@@ -100,12 +116,31 @@ impl RunLog {
 
     /// A log that keeps the last minute of poses, commands and states only: it does not grow in a run of hours.
     pub fn brief() -> Self {
-        Self { is_brief: true, ..Self::default() }
+        Self { extent: Extent::LastMinute, ..Self::default() }
+    }
+
+    /// The log of a run: brief without a mission; thinned for a robot that waits for goals after its mission, since its run may last for
+    /// days; else whole.
+    pub fn of_run(setup: &RunSetup) -> Self {
+        let extent = match (setup.mission.tasks().is_empty(), setup.is_operated) {
+            (true, _) => Extent::LastMinute,
+            (false, true) => Extent::Thinned,
+            (false, false) => Extent::Whole,
+        };
+        Self { extent, ..Self::default() }
     }
 
     /// Whether the log keeps the last minute only.
     pub fn is_brief(&self) -> bool {
-        self.is_brief
+        self.extent == Extent::LastMinute
+    }
+
+    /// Thins entries that are too old for the whole part of a thinned log.
+    fn thin_old(&mut self) {
+        let now = self.now;
+        thin_first(&mut self.estimates, now, |estimate| estimate.stamp);
+        thin_first(&mut self.truths, now, |(stamp, _)| *stamp);
+        thin_first(&mut self.twists, now, |(stamp, _)| *stamp);
     }
 
     /// Drops entries that are too old for a brief log.
@@ -141,8 +176,10 @@ impl RunLog {
             self.estimates.extend(report.estimate);
         }
         self.twists.extend(report.twist.map(|twist| (now, twist)));
-        if self.is_brief {
-            self.drop_old();
+        match self.extent {
+            Extent::Whole => {}
+            Extent::Thinned => self.thin_old(),
+            Extent::LastMinute => self.drop_old(),
         }
     }
 
@@ -219,20 +256,71 @@ fn drop_first<T>(list: &mut Vec<T>, is_old: impl Fn(&T) -> bool) {
     }
 }
 
+/// Keeps one entry per [`THINNED_PERIOD_S`] of those older than [`WHOLE_PART_S`], in a list sorted by time; many in one step.
+fn thin_first<T>(list: &mut Vec<T>, now: Stamp, stamp: impl Fn(&T) -> Stamp) {
+    let is_old = |entry: &T| now - stamp(entry) > WHOLE_PART_S;
+    // The thinned part has one entry per second. The rest of the old entries waits to be thinned.
+    let thinned = list.first().map_or(0.0, |first| (now - stamp(first) - WHOLE_PART_S) / THINNED_PERIOD_S);
+    let due = thinned.max(0.0) as usize + MIN_DROPPED_ENTRIES;
+    if !list.get(due).is_some_and(&is_old) {
+        return;
+    }
+    let mut last: Option<Stamp> = None;
+    list.retain(|entry| {
+        let at = stamp(entry);
+        let is_kept = now - at <= WHOLE_PART_S || last.is_none_or(|last| at - last >= THINNED_PERIOD_S);
+        if is_kept {
+            last = Some(at);
+        }
+        is_kept
+    });
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_brief_log_does_not_grow() {
-        let mut log = RunLog::brief();
-        for i in 0..20_000 {
+    /// A log after a run of `seconds` with truth and commands at 50 Hz.
+    fn log_of(mut log: RunLog, seconds: i64) -> RunLog {
+        for i in 0..50 * seconds {
             let stamp = Stamp::from_nanos(i * 20_000_000);
-            log.on_event(&SensorEvent::Truth { stamp, pose: Pose2::IDENTITY }, Pose2::IDENTITY);
+            let pose = Pose2::new(0.01 * i as f64, 0.0, 0.0);
+            log.on_event(&SensorEvent::Truth { stamp, pose }, Pose2::IDENTITY);
             let mut report = StepReport::default();
             report.twist = Some(Twist2::ZERO);
             log.on_report(stamp, &report);
         }
+        log
+    }
+
+    #[test]
+    fn a_thinned_log_keeps_ten_minutes_whole_and_a_second_of_the_rest() {
+        let thinned = RunLog { extent: Extent::Thinned, ..RunLog::default() };
+        let log = log_of(thinned, 3600);
+        let whole = (WHOLE_PART_S / 0.02) as usize;
+        for length in [log.truths.len(), log.twists.len()] {
+            assert!((whole + 2900..whole + 3100 + MIN_DROPPED_ENTRIES).contains(&length), "{length}");
+        }
+        assert!(log.truths.windows(2).all(|pair| pair[1].0 - pair[0].0 <= THINNED_PERIOD_S + 0.03));
+        assert!((log.path_length() - 0.01 * 179_999.0).abs() < 1e-6, "{}", log.path_length());
+    }
+
+    #[test]
+    fn the_log_follows_mission_and_operator() {
+        let setup = |mission, is_operated| RunSetup {
+            is_operated,
+            ..RunSetup::new("room", mission, trundle_runtime::RobotConfig::default())
+        };
+        let mission = || trundle_runtime::Mission::new(vec![trundle_runtime::Task::Explore]).unwrap();
+        let extent = |mission, is_operated| RunLog::of_run(&setup(mission, is_operated)).extent;
+        assert_eq!(extent(mission(), false), Extent::Whole);
+        assert_eq!(extent(mission(), true), Extent::Thinned);
+        assert_eq!(extent(trundle_runtime::Mission::default(), true), Extent::LastMinute);
+    }
+
+    #[test]
+    fn a_brief_log_does_not_grow() {
+        let log = log_of(RunLog::brief(), 400);
         for length in [log.truths.len(), log.twists.len()] {
             assert!((3000..=3001 + MIN_DROPPED_ENTRIES).contains(&length), "{length}");
         }
