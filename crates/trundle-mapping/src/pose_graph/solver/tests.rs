@@ -51,10 +51,12 @@ proptest! {
     ) {
         let pairs: Vec<_> = loops.into_iter().filter(|(i, j)| i != j).collect();
         let (poses, constraints) = graph(12, &pairs, &noise);
-        let information: Vec<_> = constraints.iter().map(Constraint::information).collect();
         let pairs: Vec<_> = constraints.iter().map(Constraint::poses).collect();
-        let mut matrix = BlockMatrix::new(poses.len(), &pairs);
-        let found = step(&mut matrix, &poses, &constraints, &information).unwrap();
+        let mut equations = PoseEquations::new(poses.len(), &pairs);
+        for constraint in &constraints {
+            equations.add_constraint(&poses, constraint, &constraint.information());
+        }
+        let found = equations.solve().unwrap();
         let expected = dense_step(&poses, &constraints);
         for (i, step) in found.iter().enumerate() {
             prop_assert!((step - expected.fixed_rows::<3>(3 * i)).norm() < 1e-7, "pose {i}: {step}");
