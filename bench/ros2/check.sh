@@ -9,7 +9,7 @@
 set -u
 
 # Parts of user.py that take 2 minutes together; all of them take 4. `transforms` watches while the others drive.
-user_parts="goal transforms cancel preempt wrong_frame unreachable not_finite late_joiner lifecycle_states clear_costmaps save_map load_map"
+user_parts="goal transforms cancel preempt wrong_frame not_finite late_joiner lifecycle_states clear_costmaps save_map load_map"
 
 if [ $# -lt 1 ]; then
     echo "check: the folder is missing; call: check.sh DIR [TRUNDLE]" >&2
