@@ -28,7 +28,7 @@ export class Timeline {
   /** Shows a time of the past; null shows now. */
   look(time: number | null): void {
     this.at = time;
-    this.onLook(time, time === null ? null : (this.moments.at(time) ?? null));
+    this.onLook(time, time === null ? null : (this.moments.at(time) ?? this.moments.list[0] ?? null));
     this.showText();
     if (time === null) this.slider.value = "0";
     else this.slider.value = String(time - this.moments.now);
