@@ -50,7 +50,7 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
     let (page, front_end) = args.live.front_ends(setup, progress, None, true)?;
     if setup.real_time {
         let start = |events, place| SimulatedRealTimeBody::start(body, events, place);
-        let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::of_run(setup), front_end);
+        let run = run_in_real_time(setup, start, &folder, checkpoint, setup.log(), front_end);
         line.finish_and_clear();
         drop(page);
         let (run, timing) = run?;

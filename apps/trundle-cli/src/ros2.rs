@@ -8,7 +8,7 @@ use crate::outcome::Outcome;
 use crate::{console, logging, run_output};
 use std::time::Duration;
 use trundle::app::real_time::run_in_real_time;
-use trundle::app::{AppError, RunLog, first_mission, keep_other_checkpoint, stop};
+use trundle::app::{AppError, first_mission, keep_other_checkpoint, stop};
 use trundle::ros2::Ros2Robot;
 
 /// `trundle ros2`.
@@ -30,7 +30,7 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
         console::print(&options.node.announcement(&setup.mission_line()));
     }
     let (line, progress) = console::progress(args.options.common.quiet);
-    let log = RunLog::of_run(&setup);
+    let log = setup.log();
     let (page, front_end) = args.live.front_ends(&setup, progress, Some(link), true)?;
     let checkpoint = args.options.checkpoint.as_deref();
     let start = |events, _place| {

@@ -12,7 +12,7 @@ use crate::{console, logging, run_output};
 use std::time::Instant;
 use trundle::app::hardware::{OpenCamera, start_hardware};
 use trundle::app::real_time::run_in_real_time;
-use trundle::app::{AppError, RUN_COMMAND, RunLog, RunSetup, first_mission, keep_other_checkpoint};
+use trundle::app::{AppError, RUN_COMMAND, RunSetup, first_mission, keep_other_checkpoint};
 
 /// `trundle run`.
 pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
@@ -52,7 +52,7 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
         // A refused run does not change the checkpoint.
         keep_other_checkpoint(checkpoint, args.mission.resume.as_deref()).map(|()| body)
     };
-    let log = RunLog::of_run(setup);
+    let log = setup.log();
     let run = run_in_real_time(setup, start, &folder, checkpoint, log, front_end);
     line.finish_and_clear();
     drop(page);

@@ -1,6 +1,6 @@
 //! The log of a run for evaluation and pictures: poses, truth, commands, states.
 
-use crate::{BodyLog, PoseSample, RunSetup};
+use crate::{BodyLog, PoseSample};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Pose2, PoseEstimate, SensorEvent, Stamp, Twist2};
 use trundle_runtime::{DriveState, Reason, StepReport, TransitionReason};
@@ -119,13 +119,13 @@ impl RunLog {
         Self { extent: Extent::LastMinute, ..Self::default() }
     }
 
-    /// The log of a run: brief without a mission; thinned for a robot that waits for goals after its mission, since its run may last for
-    /// days; else whole.
-    pub fn of_run(setup: &RunSetup) -> Self {
-        let extent = match (setup.mission.tasks().is_empty(), setup.is_operated) {
-            (true, _) => Extent::LastMinute,
-            (false, true) => Extent::Thinned,
-            (false, false) => Extent::Whole,
+    /// The log of a run. A robot without a mission has a brief one; one that waits for goals after its mission (`is_operated`) has a thinned
+    /// one, since its run may last for days; else the log is whole.
+    pub fn of_run(has_mission: bool, is_operated: bool) -> Self {
+        let extent = match (has_mission, is_operated) {
+            (false, _) => Extent::LastMinute,
+            (true, true) => Extent::Thinned,
+            (true, false) => Extent::Whole,
         };
         Self { extent, ..Self::default() }
     }
@@ -307,15 +307,9 @@ mod tests {
 
     #[test]
     fn the_log_follows_mission_and_operator() {
-        let setup = |mission, is_operated| RunSetup {
-            is_operated,
-            ..RunSetup::new("room", mission, trundle_runtime::RobotConfig::default())
-        };
-        let mission = || trundle_runtime::Mission::new(vec![trundle_runtime::Task::Explore]).unwrap();
-        let extent = |mission, is_operated| RunLog::of_run(&setup(mission, is_operated)).extent;
-        assert_eq!(extent(mission(), false), Extent::Whole);
-        assert_eq!(extent(mission(), true), Extent::Thinned);
-        assert_eq!(extent(trundle_runtime::Mission::default(), true), Extent::LastMinute);
+        assert_eq!(RunLog::of_run(true, false).extent, Extent::Whole);
+        assert_eq!(RunLog::of_run(true, true).extent, Extent::Thinned);
+        assert_eq!(RunLog::of_run(false, true).extent, Extent::LastMinute);
     }
 
     #[test]

@@ -97,6 +97,12 @@ impl RunSetup {
         }
     }
 
+    /// The empty log of the run.
+    #[must_use]
+    pub fn log(&self) -> RunLog {
+        RunLog::of_run(!self.mission.tasks().is_empty(), self.is_operated)
+    }
+
     /// The same run, made by another command than `demo`.
     #[must_use]
     pub fn by_command(self, command: &str) -> Self {

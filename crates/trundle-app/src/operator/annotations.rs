@@ -1,7 +1,8 @@
 //! Zones and named places as front ends read and change them.
 
 use super::annotation_edit::AnnotationEdit;
-use super::link::{Operator, OperatorError};
+use super::link::Operator;
+use super::operator_error::OperatorError;
 use std::sync::Arc;
 use trundle_core::{MapAnnotations, OccupancyGrid, Pose2};
 use trundle_io::{annotations_text, replace_file};

@@ -1,8 +1,9 @@
 //! The two ends of the link between a run and its operator.
 
 use super::annotation_store::AnnotationStore;
+use super::operator_error::OperatorError;
 use super::request::OperatorRequest;
-use super::request_queue::{MAX_WAITING_REQUESTS, RequestReceiver, RequestSender, request_queue};
+use super::request_queue::{RequestReceiver, RequestSender, request_queue};
 use super::run_view::RunView;
 use super::series::SeriesView;
 use super::view_feed::ViewFeed;
@@ -11,8 +12,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use thiserror::Error;
-use trundle_core::{Invalid, MapAnnotations, PinholeCamera, RgbdImage, SensorEvent, Stamp};
+use trundle_core::{MapAnnotations, PinholeCamera, RgbdImage, SensorEvent, Stamp};
 use trundle_io::EncodedRgbd;
 use trundle_runtime::{OperatorCommand, Robot, StepReport};
 
@@ -47,32 +47,6 @@ struct Shared {
     annotations: Mutex<AnnotationStore>,
     /// Held while zones or places are changed and written.
     editing: Mutex<()>,
-}
-
-/// Reason why a request does not reach the run.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum OperatorError {
-    /// A number of the command is not finite or outside its range.
-    #[error(transparent)]
-    Invalid(#[from] Invalid),
-    /// Requests arrive faster than the run processes them.
-    #[error("{MAX_WAITING_REQUESTS} requests wait for the robot: send fewer")]
-    Busy,
-    /// The run is over.
-    #[error("the run is over")]
-    Over,
-    /// Zones or places could not be written to their file.
-    #[error("the change applies until the run ends and is not saved: {0}")]
-    NotKept(String),
-    /// No place has this name.
-    #[error("no place '{name}'; there are: {}", if known.is_empty() { "none" } else { known })]
-    NoPlace {
-        /// The name.
-        name: String,
-        /// The known names.
-        known: String,
-    },
 }
 
 /// A link: the front end's end and the run's end.

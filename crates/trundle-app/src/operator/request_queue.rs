@@ -1,13 +1,10 @@
 //! Requests on their way to the run: in the order of sending, except a stop.
 
-use super::link::OperatorError;
+use super::operator_error::{MAX_WAITING_REQUESTS, OperatorError};
 use super::request::OperatorRequest;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use trundle_runtime::OperatorCommand;
-
-/// Largest number of requests that wait for the run. A run takes one at each step. Source: ours.
-pub(super) const MAX_WAITING_REQUESTS: usize = 64;
 
 /// The senders' end. Clones share the end.
 #[derive(Debug, Clone)]

@@ -16,7 +16,7 @@ const REQUESTS: usize = 64;
 const PEERS: usize = 30;
 
 /// The bytes that a peer gets for requests for the page's largest file, up to the end of the connection.
-fn flood(address: SocketAddr) -> std::io::Result<Vec<u8>> {
+fn send_many(address: SocketAddr) -> std::io::Result<Vec<u8>> {
     let request = format!("GET /page.js HTTP/1.1\r\nHost: {address}\r\n\r\n").repeat(REQUESTS);
     let mut stream = TcpStream::connect(address)?;
     stream.write_all(request.as_bytes())?;
@@ -31,7 +31,7 @@ fn flood(address: SocketAddr) -> std::io::Result<Vec<u8>> {
 #[test]
 fn requests_sent_in_one_go_get_one_answer() {
     let run = LiveRun::start();
-    let bytes = flood(run.page.address()).unwrap();
+    let bytes = send_many(run.page.address()).unwrap();
     let answers = bytes.windows(8).filter(|window| window == b"HTTP/1.1").count();
     assert_eq!(answers, 1);
     let (head, _) = fetch(run.page.address(), "GET /", &[("Host", &run.page.address().to_string())]);
@@ -49,7 +49,7 @@ fn a_flood_of_requests_does_not_delay_the_stop() {
             scope.spawn(|| {
                 while !is_over.load(Ordering::Relaxed) {
                     // A peer without a free place of the server tries again.
-                    _ = flood(address);
+                    _ = send_many(address);
                 }
             });
         }
