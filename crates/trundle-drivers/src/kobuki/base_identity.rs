@@ -60,7 +60,7 @@ impl BaseIdentity {
         if self.has_answered { Ok(()) } else { Err(OtherBase { found, expected }) }
     }
 
-    /// Whether the run's base is on the line. A base without a reported id cannot be told from another.
+    /// Whether the run's base is on the line. A base without a reported id looks like any other.
     pub(super) fn is_confirmed(&self) -> bool {
         self.has_answered || self.expected.is_none()
     }

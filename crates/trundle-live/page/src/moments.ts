@@ -4,8 +4,8 @@ import { headingBound, positionEllipse, type Covariance } from "./uncertainty";
 import type { Seen } from "./map_view";
 import type { Pose, RobotState, StateEntry } from "./wire";
 
-/** Time that is kept [s]. */
-const LENGTH_S = 600;
+/** Time that the time line and all that it shows keep [s]. */
+export const LENGTH_S = 600;
 /** Time between two moments that are kept [s]. */
 const PERIOD_S = 0.2;
 /** A time that is so much before the last one is that of another run [s]. */

@@ -1,10 +1,9 @@
 // Pictures of the camera in the last ten minutes, one a second, and the camera's card at a time of the past.
 
 import { clearFeatures, drawDepth, drawImage, hideImage, type ImageEnd } from "./camera";
+import { LENGTH_S } from "./moments";
 import type { DepthMessage } from "./wire";
 
-/** Time that is kept [s]: that of the time line. */
-const LENGTH_S = 600;
 /** Time between two pictures that are kept [s]: 600 pictures of 20 kB with their depth of 20 kB. */
 const PERIOD_S = 1;
 /** Largest age of a picture that is shown for a time [s]. */

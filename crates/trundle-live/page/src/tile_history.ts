@@ -1,10 +1,10 @@
 // What the map's tiles were: each replaced tile of the last minutes, up to a bound of memory.
 
+import { LENGTH_S } from "./moments";
+
 /** The cells of a tile; null where none were known. */
 export type Cells = Uint8Array | null;
 
-/** Time that is kept [s]: that of the time line. */
-const LENGTH_S = 600;
 /** Largest number of replaced tiles that are kept, 1 kB each. */
 const MAX_CHANGES = 20_000;
 
