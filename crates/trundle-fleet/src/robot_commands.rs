@@ -10,10 +10,20 @@ pub trait RobotCommands {
     /// # Errors
     /// Reason why the robot refuses the command.
     fn send(&mut self, command: OperatorCommand) -> Result<u64, String>;
+
+    /// Stops the robot and ends its mission, before all waiting commands.
+    ///
+    /// # Errors
+    /// Reason why the robot cannot be stopped.
+    fn stop(&mut self) -> Result<(), String>;
 }
 
 impl RobotCommands for Operator {
     fn send(&mut self, command: OperatorCommand) -> Result<u64, String> {
         Self::send(self, command).map_err(|error| error.to_string())
+    }
+
+    fn stop(&mut self) -> Result<(), String> {
+        Self::stop(self).map(drop).map_err(|error| error.to_string())
     }
 }

@@ -53,6 +53,12 @@ impl OperatorCommand {
         matches!(self, Self::Begin(_) | Self::Pause | Self::Continue | Self::Drive(_))
     }
 
+    /// Whether the command begins or ends a pause.
+    #[must_use]
+    pub fn decides_pause(&self) -> bool {
+        matches!(self, Self::Pause | Self::Continue | Self::Drive(_))
+    }
+
     /// Returns a command with valid numbers unchanged.
     ///
     /// # Errors

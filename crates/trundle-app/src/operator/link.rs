@@ -66,18 +66,24 @@ impl Operator {
     /// Sends a command; returns its number, by which [`RunView::mission`] identifies the mission that the command starts.
     ///
     /// # Errors
-    /// When the command cannot be carried out, too many wait, or the run is over.
+    /// When the command cannot be carried out, too many wait, a person has driven without release since a stop, or the run is over.
     pub fn send(&self, command: OperatorCommand) -> Result<u64, OperatorError> {
         self.shared.requests.send(command.validated()?)
     }
 
     /// Stops the robot and ends its mission, before all waiting requests; drops those that would move it afterwards. A full queue does not
-    /// refuse a stop. Returns the number of the mission's end, as [`Self::send`].
+    /// refuse a stop. Who drives by hand must release the control before the robot moves again. Returns the number of the pause.
     ///
     /// # Errors
     /// When the run is over.
     pub fn stop(&self) -> Result<u64, OperatorError> {
         self.shared.requests.stop()
+    }
+
+    /// Number of the last request that begins or ends a pause: of any front end.
+    #[must_use]
+    pub fn last_pause(&self) -> u64 {
+        self.shared.requests.last_pause()
     }
 
     pub(super) fn editing(&self) -> MutexGuard<'_, ()> {

@@ -16,6 +16,9 @@ pub enum OperatorError {
     /// Requests arrive faster than the run processes them.
     #[error("{MAX_WAITING_REQUESTS} requests wait for the robot: send fewer")]
     Busy,
+    /// A person has driven without release since a stop.
+    #[error("the robot was stopped: release the control, then drive again")]
+    Stopped,
     /// The run is over.
     #[error("the run is over")]
     Over,

@@ -4,7 +4,9 @@ use super::operator_error::{MAX_WAITING_REQUESTS, OperatorError};
 use super::request::OperatorRequest;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use trundle_runtime::OperatorCommand;
+use std::time::{Duration, Instant};
+use trundle_core::Twist2;
+use trundle_runtime::{OperatorCommand, TELEOP_SILENCE_S};
 
 /// The senders' end. Clones share the end.
 #[derive(Debug, Clone)]
@@ -23,6 +25,10 @@ struct Waiting {
     requests: VecDeque<OperatorRequest>,
     /// Number of the last request.
     last: u64,
+    /// Number of the last request that begins or ends a pause.
+    last_pause: u64,
+    /// Time of a stop, or of the last twist that was refused after it. Twists are refused until their sender has released the robot.
+    stopped: Option<Instant>,
     is_over: bool,
 }
 
@@ -39,19 +45,22 @@ impl RequestSender {
         if waiting.requests.len() >= MAX_WAITING_REQUESTS {
             return Err(OperatorError::Busy);
         }
+        waiting.require_released(&command, Instant::now())?;
         let request = waiting.numbered(command);
         let id = request.id;
         waiting.requests.push_back(request);
         Ok(id)
     }
 
-    /// Puts a pause and the end of the mission before all waiting requests, and drops those that would move the robot after it.
+    /// Puts a pause and the end of the mission before all waiting requests, and drops those that would move the robot after it. Driving by
+    /// hand that goes on is refused: it begins anew after a zero twist or a silence of [`TELEOP_SILENCE_S`]. Returns the number of the pause.
     pub(super) fn stop(&self) -> Result<u64, OperatorError> {
         let mut waiting = self.open()?;
+        waiting.stopped = Some(Instant::now());
         waiting.requests.retain(|request| !request.command.decides_motion());
         let (pause, cancel) =
             (waiting.numbered(OperatorCommand::Pause), waiting.numbered(OperatorCommand::cancel()));
-        let id = cancel.id;
+        let id = pause.id;
         waiting.requests.push_front(cancel);
         waiting.requests.push_front(pause);
         Ok(id)
@@ -67,6 +76,11 @@ impl RequestSender {
     /// Number of the last request that was sent.
     pub(super) fn last(&self) -> u64 {
         lock(&self.waiting).last
+    }
+
+    /// Number of the last request that begins or ends a pause.
+    pub(super) fn last_pause(&self) -> u64 {
+        lock(&self.waiting).last_pause
     }
 
     fn open(&self) -> Result<MutexGuard<'_, Waiting>, OperatorError> {
@@ -89,8 +103,22 @@ impl Drop for RequestReceiver {
 }
 
 impl Waiting {
+    /// Refuses a twist of a person who has driven without release since a stop.
+    fn require_released(&mut self, command: &OperatorCommand, now: Instant) -> Result<(), OperatorError> {
+        let (OperatorCommand::Drive(twist), Some(since)) = (command, self.stopped) else { return Ok(()) };
+        if *twist == Twist2::ZERO || now - since > Duration::from_secs_f64(TELEOP_SILENCE_S) {
+            self.stopped = None;
+            return Ok(());
+        }
+        self.stopped = Some(now);
+        Err(OperatorError::Stopped)
+    }
+
     fn numbered(&mut self, command: OperatorCommand) -> OperatorRequest {
         self.last += 1;
+        if command.decides_pause() {
+            self.last_pause = self.last;
+        }
         OperatorRequest { id: self.last, command }
     }
 }
@@ -154,5 +182,38 @@ mod tests {
         let last = sender.last();
         assert_eq!(sender.send(begin()).unwrap(), last + 1);
         assert_eq!(taken(&requests), [begin()]);
+    }
+
+    #[test]
+    fn after_a_stop_driving_by_hand_begins_anew_by_a_zero_twist_or_by_silence() {
+        let drive = OperatorCommand::Drive(Twist2::new(0.3, 0.0));
+        let (mut waiting, start) = (Waiting::default(), Instant::now());
+        let at = |ms| start + Duration::from_millis(ms);
+        waiting.stopped = Some(start);
+        for ms in [100, 350, 600] {
+            let refused = waiting.require_released(&drive, at(ms));
+            assert!(matches!(refused, Err(OperatorError::Stopped)), "a held key is no release: {ms} ms");
+        }
+        waiting.require_released(&drive, at(901)).expect("silence is a release");
+        waiting.require_released(&drive, at(1000)).unwrap();
+        let (sender, requests) = request_queue();
+        sender.stop().unwrap();
+        assert!(matches!(sender.send(drive.clone()), Err(OperatorError::Stopped)));
+        sender.send(begin()).expect("another request is not held back");
+        sender.send(OperatorCommand::Drive(Twist2::ZERO)).unwrap();
+        sender.send(drive.clone()).expect("a zero twist is a release");
+        assert_eq!(taken(&requests).last(), Some(&drive));
+    }
+
+    #[test]
+    fn the_last_request_for_a_pause_is_known() {
+        let (sender, _requests) = request_queue();
+        let pause = sender.send(OperatorCommand::Pause).unwrap();
+        sender.send(begin()).unwrap();
+        assert_eq!(sender.last_pause(), pause);
+        let stop = sender.stop().unwrap();
+        assert!(sender.last_pause() == stop && stop > pause);
+        let go_on = sender.send(OperatorCommand::Continue).unwrap();
+        assert_eq!(sender.last_pause(), go_on);
     }
 }

@@ -21,7 +21,7 @@ pub fn execute(
         HomeCommand::Pause => OperatorCommand::Pause,
         HomeCommand::Continue => OperatorCommand::Continue,
         HomeCommand::Start if is_paused => OperatorCommand::Continue,
-        HomeCommand::Stop => OperatorCommand::cancel(),
+        HomeCommand::Stop => return robot.stop().map(|()| "stop".to_owned()),
         task => {
             let mission =
                 Mission::new(vec![task_of(task, view, places)?]).map_err(|error| error.to_string())?;
@@ -29,7 +29,7 @@ pub fn execute(
         }
     };
     let text = text_of(&command);
-    let begins = matches!(&command, OperatorCommand::Begin(mission) if !mission.tasks().is_empty());
+    let begins = matches!(&command, OperatorCommand::Begin(_));
     robot.send(command)?;
     if begins && is_paused {
         robot.send(OperatorCommand::Continue)?;
@@ -57,8 +57,42 @@ fn text_of(command: &OperatorCommand) -> String {
         OperatorCommand::Pause => "pause".to_owned(),
         OperatorCommand::Continue => "go on".to_owned(),
         OperatorCommand::Begin(mission) => {
-            mission.tasks().first().map_or("stop".to_owned(), ToString::to_string)
+            mission.tasks().first().map(ToString::to_string).unwrap_or_default()
         }
         _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_app::operator::operator_link;
+    use trundle_core::Pose2;
+
+    struct NoPlaces;
+
+    impl Places for NoPlaces {
+        fn names(&self) -> Vec<String> {
+            Vec::new()
+        }
+
+        fn pose(&self, _: &str) -> Option<Pose2> {
+            None
+        }
+    }
+
+    #[test]
+    fn a_stop_comes_before_waiting_commands_and_the_next_task_ends_its_pause() {
+        let (mut operator, link) = operator_link();
+        let mut view = RobotStatus::at_rest(Pose2::new(0.0, 0.0, 0.0));
+        let mut run = |command, view: &RobotStatus| execute(&command, view, &NoPlaces, &mut operator);
+        run(HomeCommand::Return, &view).unwrap();
+        assert_eq!(run(HomeCommand::Stop, &view), Ok("stop".to_owned()));
+        let taken =
+            || std::iter::from_fn(|| link.next_request()).map(|request| request.command).collect::<Vec<_>>();
+        assert_eq!(taken(), [OperatorCommand::Pause, OperatorCommand::cancel()]);
+        view.hold = Some(MotionHold::Paused);
+        run(HomeCommand::Return, &view).unwrap();
+        assert_eq!(taken().last(), Some(&OperatorCommand::Continue));
     }
 }

@@ -38,6 +38,11 @@ impl RobotCommands for Commands<'_> {
         }
         Ok(id)
     }
+
+    fn stop(&mut self) -> Result<(), String> {
+        self.send(OperatorCommand::Pause)?;
+        self.send(OperatorCommand::cancel()).map(drop)
+    }
 }
 
 fn mission_view(id: u64, mission: &Mission) -> MissionView {

@@ -17,6 +17,10 @@ impl RobotCommands for AcceptingRobot {
         self.0 += 1;
         Ok(self.0)
     }
+
+    fn stop(&mut self) -> Result<(), String> {
+        Ok(())
+    }
 }
 
 /// A message as an order, then as instant actions; the state after each must be JSON.

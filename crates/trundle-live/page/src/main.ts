@@ -556,6 +556,8 @@ function toast(text: string, tone: "good" | "warn" | "bad"): void {
   note.dataset["tone"] = tone;
   note.textContent = text;
   const notes = element("toasts");
+  // A note that is repeated, as those of a held key, is shown once.
+  for (const other of [...notes.children]) if (other.textContent === text) other.remove();
   notes.append(note);
   while (notes.children.length > 3) notes.firstElementChild?.remove();
   setTimeout(() => note.remove(), tone === "good" ? 2500 : 6000);

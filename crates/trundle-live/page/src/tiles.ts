@@ -99,12 +99,22 @@ export class Tiles {
 
   /** Whether a point of the map frame is in an occupied cell. */
   isWall(p: Point): boolean {
+    return this.cellAt(p) === 2;
+  }
+
+  /** Whether the cell of a point of the map frame is known. */
+  isKnown(p: Point): boolean {
+    return this.cellAt(p) !== 0;
+  }
+
+  /** The cell of a point of the map frame: 0 unknown, 1 free, 2 occupied. */
+  private cellAt(p: Point): number {
     const column = Math.floor((p[0] - this.origin[0]) / this.resolution);
     const row = Math.floor((p[1] - this.origin[1]) / this.resolution);
     const tile = this.cells.get(`${Math.floor(column / TILE_CELLS)},${Math.floor(row / TILE_CELLS)}`);
-    if (!tile) return false;
+    if (!tile) return 0;
     const i = (row - tile.row * TILE_CELLS) * TILE_CELLS + (column - tile.column * TILE_CELLS);
-    return (((tile.cells[i >> 2] ?? 0) >> (2 * (i & 3))) & 3) === 2;
+    return ((tile.cells[i >> 2] ?? 0) >> (2 * (i & 3))) & 3;
   }
 
   /** Corners of the cells that are known, map frame; null without one. */

@@ -9,7 +9,7 @@ use crate::run_facts::{RunFacts, RunKind};
 use crate::wire::{Goal, Request, SettingText};
 use goal_check::require_free;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use trundle_app::operator::{AnnotationEdit, FolderMap, MapFolder, Operator};
 use trundle_core::{DriveLimits, Pose2, Twist2, Zone, require_in};
@@ -35,8 +35,9 @@ pub struct RunSteering {
     maps: Option<MapFolder>,
     /// Claimed while a map is read.
     reading: Arc<Semaphore>,
-    /// Whether a stop or a drive by hand of this page paused the robot: the next task of the page ends that pause.
-    is_paused_here: AtomicBool,
+    /// Number of the page's last stop or twist by hand; 0 before. The next task of the page ends that pause, unless another request for a
+    /// pause came after it.
+    own_pause: AtomicU64,
 }
 
 impl RunSteering {
@@ -45,7 +46,7 @@ impl RunSteering {
         let check = FootprintCheck::new(&facts.footprint);
         let (kind, limits) = (facts.kind, facts.limits);
         let reading = Arc::new(Semaphore::new(1));
-        Self { operator, kind, check, limits, maps, reading, is_paused_here: AtomicBool::new(false) }
+        Self { operator, kind, check, limits, maps, reading, own_pause: AtomicU64::new(0) }
     }
 
     /// Carries out a request for the robot; ignores others, and requests for a map, which is read first.
@@ -63,14 +64,8 @@ impl RunSteering {
             Request::Return { .. } => self.begin(vec![Task::Return]),
             Request::Dock { .. } => self.begin(vec![Task::Dock]),
             Request::Stop { .. } => self.stop(),
-            Request::Pause { .. } => {
-                self.is_paused_here.store(false, Ordering::Relaxed);
-                self.send(OperatorCommand::Pause)
-            }
-            Request::Continue { .. } => {
-                self.is_paused_here.store(false, Ordering::Relaxed);
-                self.send(OperatorCommand::Continue)
-            }
+            Request::Pause { .. } => self.send(OperatorCommand::Pause),
+            Request::Continue { .. } => self.send(OperatorCommand::Continue),
             Request::Drive { v, omega } => self.drive(*v, *omega),
             Request::SetPose { pose, .. } => self.send(OperatorCommand::SetPose(PoseGuess {
                 pose: pose.pose(),
@@ -103,16 +98,21 @@ impl RunSteering {
     /// # Errors
     /// When the run is over.
     pub fn stop(&self) -> Result<(), CommandRefusal> {
-        self.operator.stop().map_err(CommandRefusal::from)?;
-        self.is_paused_here.store(true, Ordering::Relaxed);
+        let number = self.operator.stop()?;
+        self.own_pause.store(number, Ordering::Relaxed);
         Ok(())
     }
 
-    /// Stops the robot after the departure of its driver.
+    /// Stops the robot after the departure of its driver, unless another front end has paused it or let it go on since.
     pub fn end_of_hand(&self) {
-        if self.is_paused_here.load(Ordering::Relaxed) && self.send(OperatorCommand::Pause).is_err() {
+        if self.is_paused_here() && self.send(OperatorCommand::Pause).is_err() {
             tracing::debug!("live page: the run is over");
         }
+    }
+
+    fn is_paused_here(&self) -> bool {
+        let own = self.own_pause.load(Ordering::Relaxed);
+        own > 0 && own == self.operator.last_pause()
     }
 
     fn go(&self, goals: &[Goal], append: bool) -> Result<(), CommandRefusal> {
@@ -197,7 +197,7 @@ impl RunSteering {
 
     fn begin(&self, tasks: Vec<Task>) -> Result<(), CommandRefusal> {
         self.send(OperatorCommand::Begin(Mission::new(tasks)?))?;
-        if self.is_paused_here.swap(false, Ordering::Relaxed) {
+        if self.is_paused_here() {
             self.send(OperatorCommand::Continue)?;
         }
         Ok(())
@@ -205,8 +205,10 @@ impl RunSteering {
 
     fn drive(&self, v: f64, omega: f64) -> Result<(), CommandRefusal> {
         let part = |part: f64, max: f64| HAND_SPEED * max * part.clamp(-1.0, 1.0);
-        self.is_paused_here.store(true, Ordering::Relaxed);
-        self.send(OperatorCommand::Drive(Twist2::new(part(v, self.limits.v), part(omega, self.limits.omega))))
+        let twist = Twist2::new(part(v, self.limits.v), part(omega, self.limits.omega));
+        let number = self.operator.send(OperatorCommand::Drive(twist))?;
+        self.own_pause.store(number, Ordering::Relaxed);
+        Ok(())
     }
 
     fn send(&self, command: OperatorCommand) -> Result<(), CommandRefusal> {
@@ -270,6 +272,34 @@ mod tests {
         assert!(change("drive.wheel_radius_m", 1.0).unwrap_err().text.contains("cannot change"));
         assert!(change("mission_executor.patience_s", 20.0).is_ok());
         drop(link);
+    }
+
+    #[test]
+    fn a_page_that_closes_or_sets_a_goal_leaves_the_pause_of_another_front_end() {
+        let (steering, link) = steering();
+        let other = link.operator();
+        let taken =
+            || std::iter::from_fn(|| link.next_request()).map(|request| request.command).collect::<Vec<_>>();
+        let twist = |v| Request::Drive { v, omega: 0.0 };
+        steering.execute(&twist(0.5)).unwrap();
+        steering.end_of_hand();
+        assert_eq!(taken().last(), Some(&OperatorCommand::Pause), "its own drive ends with it");
+        steering.execute(&twist(0.5)).unwrap();
+        other.send(OperatorCommand::Continue).unwrap();
+        steering.end_of_hand();
+        assert_eq!(
+            taken().last(),
+            Some(&OperatorCommand::Continue),
+            "the robot drives for another front end"
+        );
+        steering.stop().unwrap();
+        other.send(OperatorCommand::Pause).unwrap();
+        taken();
+        steering.execute(&go(1.0)).unwrap();
+        assert!(!taken().contains(&OperatorCommand::Continue), "another front end paused the robot");
+        steering.stop().unwrap();
+        steering.execute(&go(1.0)).unwrap();
+        assert_eq!(taken().last(), Some(&OperatorCommand::Continue));
     }
 
     #[test]

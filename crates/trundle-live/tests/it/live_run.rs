@@ -84,6 +84,11 @@ impl LiveRun {
         self.tokens.of(access)
     }
 
+    /// The newest view, after the first step.
+    pub fn view(&self) -> Arc<RunView> {
+        self.operator.peek().unwrap()
+    }
+
     /// Waits until the view satisfies `is`, at most 5 s.
     pub fn wait_for(&self, what: &str, is: impl Fn(&RunView) -> bool) {
         let start = Instant::now();

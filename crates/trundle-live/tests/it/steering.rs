@@ -65,6 +65,32 @@ fn driving_by_hand_pauses_the_mission_and_a_viewer_that_goes_stops_the_robot() {
     assert_eq!(other.ask(json!({"type": "return"})), None, "the wheel is free again");
 }
 
+/// A person holds the key down while another one presses STOP.
+#[test]
+fn a_stop_holds_against_a_hand_that_goes_on_until_it_lets_go() {
+    let run = LiveRun::start();
+    let mut driver = Browser::enter(&run, Access::Drive, "driver");
+    let mut other = Browser::enter(&run, Access::Drive, "other");
+    let drive = json!({"type": "drive", "v": 0.5, "omega": 0.0});
+    driver.send(&drive);
+    run.wait_for("by hand", |view| view.twist.v > 0.0);
+    assert_eq!(other.ask(json!({"type": "stop"})), None);
+    run.wait_for("rest", |view| view.twist.v == 0.0);
+    for _ in 0..10 {
+        driver.send(&drive);
+        std::thread::sleep(Duration::from_millis(50));
+        assert_eq!(run.view().twist.v, 0.0, "the robot moves after a stop");
+    }
+    let refusal = driver.wait_for("refused");
+    assert!(
+        refusal["refusal"].as_str().is_some_and(|text| text.contains("release the control")),
+        "{refusal}"
+    );
+    driver.send(&json!({"type": "drive", "v": 0.0, "omega": 0.0}));
+    driver.send(&drive);
+    run.wait_for("by hand again", |view| view.twist.v > 0.0);
+}
+
 #[test]
 fn a_given_pose_moves_the_robot_on_the_map() {
     let run = LiveRun::start();
