@@ -44,12 +44,14 @@ const args = ["--no-sandbox", "--enable-unsafe-swiftshader", ...(assets ? ["--di
 const browser = await chromium.launch({ executablePath: chromiumPath, args });
 const problems = [];
 
-/** A page whose console must stay clean, and the states that it is sent. A link that is still awaited is opened in a page that waits for it. */
-async function open(link, options = {}) {
+/** A page whose console must stay clean, and the states that it is sent. A link that is still awaited is opened in a page that waits for it.
+ * `added` are fields of the state that replace those of the program. */
+async function open(link, options = {}, added = null) {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "dark", ...options });
   context.setDefaultTimeout(1000 * PATIENCE_S);
   if (assets) await context.route(/\/(page\.(js|css))?$/, (route) => showAsset(route));
   const page = await context.newPage();
+  if (added) await page.routeWebSocket(/\/live$/, (socket) => addToStates(socket, added));
   const watch = { page, context, state: null, states: [], depths: 0, mayFail: false };
   page.on("console", (message) => {
     const isLoss = watch.mayLose && LOSS.test(message.text());
@@ -66,6 +68,14 @@ async function open(link, options = {}) {
   );
   await page.goto(await link);
   return watch;
+}
+
+/** Passes the messages on, with other fields in those of the state. */
+function addToStates(socket, added) {
+  socket.connectToServer().onMessage((message) => {
+    const isState = typeof message === "string" && message.startsWith('{"type":"state"');
+    socket.send(isState ? JSON.stringify({ ...JSON.parse(message), ...added }) : message);
+  });
 }
 
 /** The program's answer with a file of the folder of assets. */
@@ -86,9 +96,9 @@ async function until(what, is, seconds = PATIENCE_S) {
 }
 
 /** Waits until the map has drawn what it shows: a point of it stays in its place of the window. */
-async function settled() {
+async function settled(of = page) {
   const place = () =>
-    page.evaluate(async () => {
+    of.evaluate(async () => {
       for (let i = 0; i < 3; i++) await new Promise(requestAnimationFrame);
       return window.trundle.map.toWindow([0, 0]);
     });
@@ -100,6 +110,7 @@ async function settled() {
   });
 }
 
+const isShown = (page, selector) => page.locator(selector).first().isVisible();
 const text = (page, id) => page.locator(`#${id}`).innerText();
 const speed = (watch) => Math.hypot(...watch.state.command);
 let failures = 0;
@@ -308,6 +319,45 @@ const drag = async ([from, to]) => {
 };
 const entries = () => page.locator("#notes li").allInnerTexts();
 const readZones = () => JSON.parse(readFileSync(zones, "utf8")).features;
+
+await check("people with their way, loops, battery and dropped images are shown", async () => {
+  const [x, y] = main.state.pose;
+  const added = { movers: [], loops: [], voltage: null };
+  const viewer = await open(program.view, {}, added);
+  const { page } = viewer;
+  await until("a state", () => viewer.state !== null);
+  /** Pixels of the map about a point. */
+  const pixelsAt = (p) =>
+    page.evaluate((p) => {
+      const [left, top] = window.trundle.map.toWindow(p).map((at) => at * devicePixelRatio);
+      const context = document.getElementById("map").getContext("2d");
+      return [...context.getImageData(Math.round(left) - 40, Math.round(top) - 40, 80, 80).data];
+    }, p);
+  // The second person is where the first one goes within a second.
+  const [person, later] = [[x + 1, y + 0.5], [x + 1, y + 1.5]];
+  const places = [person, later];
+  await settled(page);
+  const before = await Promise.all(places.map(pixelsAt));
+  assert(!(await isShown(page, "#battery")), "a battery that no body reports");
+  const changed = async () => {
+    const now = await Promise.all(places.map(pixelsAt));
+    return now.map((pixels, i) => pixels.filter((value, k) => Math.abs(value - before[i][k]) > 8).length / pixels.length);
+  };
+  const counts = [100, 50, 1000, 123];
+  await page.waitForTimeout(1000);
+  const still = await changed();
+  assert(still.every((part) => part < 0.005), `the map changes without people: ${still}`);
+  Object.assign(added, { movers: [[...person, 0.3, ...later]], counts, voltage: 14.4, charge: 0.62, charging: true });
+  let parts;
+  await until("both discs", async () => (parts = await changed()).every((part) => part > 0.02));
+  await until("the battery", async () => (await text(page, "battery")).trim() === "62 %, charging");
+  await until("dropped images", async () => (await page.locator("#dropped").textContent()) === "123");
+  added.loops = [[main.state.time + 1, x, y]];
+  await until("a note of the loop", async () => /A loop was closed/.test(await text(page, "toasts")));
+  await picture("people", page);
+  await viewer.context.close();
+  return `${parts.map((part) => `${(100 * part).toFixed(0)} %`).join(" and ")} of the pixels at the person and on its way`;
+});
 
 await check("a no-go zone is drawn, kept in its file, and no goal is set in it", async () => {
   await page.keyboard.press("Escape");
@@ -1063,7 +1113,6 @@ async function withCommand(args, work) {
     await other.end();
   }
 }
-const isShown = (page, selector) => page.locator(selector).first().isVisible();
 /** Length of the images for `slam` [s]: the page is looked at while they are processed. */
 const TRACKED_S = 60;
 /** Way-points at the start of the office: the robot turns there. World frame: m, m, deg. */

@@ -179,3 +179,55 @@ fn map_covariance(view: &RunView) -> [f64; 4] {
     let c = view.map_covariance();
     [c[0][0], c[0][1], c[1][1], c[2][2]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+    use trundle_app::operator::{Activity, ClosedLoop, PerceptionView, RunCounts};
+    use trundle_core::{Battery, Pose2, PowerSource, Stamp, Twist2, Vector2};
+
+    fn message(change: impl FnOnce(&mut RunView)) -> Value {
+        let activity = Activity { name: "standing", reason: None };
+        let mut view = RunView::of_activity(Stamp::default(), Pose2::default(), Twist2::ZERO, activity);
+        change(&mut view);
+        serde_json::to_value(StateMessage::of(&view, 7, None, 2)).unwrap()
+    }
+
+    #[test]
+    fn people_loops_station_battery_and_dropped_images_reach_the_page() {
+        let person = MovingObstacle::new(Vector2::new(1.0, 2.0), Vector2::new(0.5, -1.0), 0.3).unwrap();
+        let state = message(|view| {
+            view.perception = PerceptionView {
+                movers: vec![person],
+                loops: vec![ClosedLoop {
+                    stamp: Stamp::default().after(3.0),
+                    pose: Pose2::new(4.0, 5.0, 0.1),
+                }],
+                station: Some(Pose2::new(-1.0, 0.0, 0.5)),
+                ..PerceptionView::default()
+            };
+            view.counts = RunCounts { slam: 1, mapping: 2, control: 3, dropped_images: 4, stages: vec![] };
+            let source = PowerSource::default();
+            view.battery = Some(Battery { voltage_v: 14.5, charge: Some(0.25), source, is_charging: true });
+        });
+        assert_eq!(
+            state["movers"],
+            json!([[1.0, 2.0, 0.3, 1.5, 1.0]]),
+            "the last two are its forecast for 1 s"
+        );
+        assert_eq!(state["loops"], json!([[3.0, 4.0, 5.0]]));
+        assert_eq!(state["station"], json!([-1.0, 0.0, 0.5]));
+        assert_eq!(state["counts"], json!([1, 2, 3, 4]));
+        assert_eq!((&state["charge"], &state["voltage"]), (&json!(0.25), &json!(14.5)));
+        assert_eq!(
+            (&state["charging"], &state["batch"], &state["viewers"]),
+            (&json!(true), &json!(7), &json!(2))
+        );
+        let plain = message(|_| {});
+        assert_eq!(
+            (&plain["movers"], &plain["station"], &plain["charge"]),
+            (&json!([]), &Value::Null, &Value::Null)
+        );
+    }
+}
