@@ -1,4 +1,4 @@
-//! The live page of `sim`, `slam` and `experiment`, as a browser meets it.
+//! The live page of `sim`, `slam`, `replay` and `experiment`, as a browser meets it.
 
 use crate::program::{summary, text, trundle};
 use serde_json::{Value, json};
@@ -249,6 +249,27 @@ fn a_sequence_is_shown_while_it_is_tracked_and_its_results_are_the_same() {
     assert!([1, 4, 6, 7].iter().all(|kind| browser.kinds.contains(kind)), "{:?}", browser.kinds);
     assert!(program.end().status.success());
     let names = ["trajectory.txt", "map.pgm", "visual.map", "recording.mcap"];
+    assert!(files(&plain, &names) == files(&shown, &names));
+}
+
+#[test]
+fn a_replay_is_shown_drives_nothing_and_its_results_are_the_same() {
+    let place = tempfile::tempdir().unwrap();
+    let script = place.path().join("drive.txt");
+    std::fs::write(&script, "0 0.3 0.2\n3 0.2 -0.3\n6 0 0\n").unwrap();
+    let [data, plain, shown] = ["data", "plain", "shown"].map(|name| place.path().join(name));
+    let record = ["sim", "demo", "--rate", "10", "--drive", text(&script), "--record", text(&data)];
+    assert!(trundle(&record).status.success());
+    let args = |out| ["replay", text(&data), "--out", out];
+    assert!(trundle(&args(text(&plain))).status.success());
+    let program = LiveProgram::start(&args(text(&shown)));
+    let mut browser = program.browser();
+    let welcome = browser.wait_for("welcome", |_| true);
+    assert_eq!((&welcome["kind"], &welcome["drives"]), (&json!("robot"), &json!(false)), "{welcome}");
+    assert!(browser.refusal(json!({"type": "stop"})).contains("takes no commands"));
+    assert!(!browser.rest().0.is_empty());
+    assert!(program.end().status.success());
+    let names = ["trajectory.txt", "map.pgm", "recording.mcap"];
     assert!(files(&plain, &names) == files(&shown, &names));
 }
 

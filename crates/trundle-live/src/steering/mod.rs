@@ -252,6 +252,17 @@ mod tests {
     }
 
     #[test]
+    fn tasks_without_a_goal_become_missions() {
+        let (steering, link) = steering();
+        let requests = [Request::Explore { id: 1 }, Request::Return { id: 2 }, Request::Dock { id: 3 }];
+        for (request, task) in requests.iter().zip([Task::Explore, Task::Return, Task::Dock]) {
+            steering.execute(request).unwrap();
+            let mission = Mission::new(vec![task]).unwrap();
+            assert_eq!(link.next_request().unwrap().command, OperatorCommand::Begin(mission));
+        }
+    }
+
+    #[test]
     fn wrong_zones_and_settings_are_refused_with_the_reason() {
         let (steering, link) = steering();
         let zone = |outline: &[[f64; 2]]| Zone {

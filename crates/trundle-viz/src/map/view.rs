@@ -106,7 +106,11 @@ impl View {
 
 #[cfg(test)]
 mod tests {
+    use super::super::frame::paint_frame;
     use super::*;
+    use crate::canvas::Canvas;
+    use crate::color::Color;
+    use crate::text::cap_height;
 
     fn geometry() -> GridGeometry {
         GridGeometry::new(0.05, Vector2::new(-1.0, -2.0), 100, 80).unwrap()
@@ -126,6 +130,21 @@ mod tests {
         let view = View::of_cells(&geometry(), CellBox { low: [-40_000, 0], high: [50_000, 10] });
         assert_eq!(view.cells.unwrap().1, Zoom::CellsPerPx(30));
         assert_eq!((view.width, view.height), (3000, 1));
+    }
+
+    /// A column of the report is 526 px wide (`report/style.css`: half of the page without its margins).
+    #[test]
+    fn letters_of_a_plot_at_half_the_width_of_a_report_are_readable() {
+        const COLUMN_PX: f64 = 526.0;
+        const LEAST_CAPITAL_PX: f64 = 5.0;
+        let geometry = geometry();
+        for cells in (1..4000).step_by(7).chain([90_000]) {
+            let view = View::of_cells(&geometry, CellBox { low: [0, 0], high: [cells, cells] });
+            let plot = Canvas::new(view.width, 1, Color::WHITE);
+            let whole = paint_frame(&plot, &view, &["x".to_owned(), "y".to_owned()], None).width();
+            let capital = cap_height(view.unit) as f64 * COLUMN_PX / whole as f64;
+            assert!(capital >= LEAST_CAPITAL_PX, "{cells} cells: capitals of {capital:.1} px");
+        }
     }
 
     #[test]
