@@ -5,17 +5,18 @@ mod tools;
 
 use crate::common_args::{BagTopicsArgs, Common, NumberArg, NumberText, choice};
 use crate::console;
+use crate::live::ViewArgs;
 use crate::logging;
 use crate::outcome::Outcome;
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use laser_args::LaserArgs;
-use std::fmt::Display;
 use std::path::PathBuf;
 use tools::MapTool;
 use trundle::app::AppError;
 use trundle::app::laser_map::{LaserMapRequest, map_log, map_rows, read_log};
 use trundle::io::MapImage;
+use trundle::live::RunFacts;
 
 /// `trundle map`
 #[derive(Debug, Args)]
@@ -82,6 +83,9 @@ pub struct MapLogArgs {
     /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/map")]
     pub out: OutputDirArg,
+    /// The live page, which shows the growing map and accepts no commands.
+    #[command(flatten)]
+    pub live: ViewArgs,
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
@@ -98,13 +102,12 @@ fn map(args: &MapLogArgs) -> Result<Outcome, AppError> {
     let display = console::StepDisplay::new(args.common.quiet);
     let folder = logging::output_folder(&args.out)?;
     let mut input = read_log(&request, &display)?;
-    let run = map_log(&request, args.localise, &mut input, &folder, &display)?;
+    let (page, link) = args.live.start(|| Ok(RunFacts::of_log(&request.log)), false)?.unzip();
+    let run = map_log(&request, args.localise, &mut input, &folder, &display, link)?;
+    drop(page);
     let place = folder.commit()?;
-    // Warnings: skipped entries, impossible ranges, another mount of the laser.
-    let warn = |problem: &dyn Display| console::warn(&format!("{}: {problem}", request.log.display()));
-    input.log.warnings().iter().for_each(|warning| warn(&warning));
-    run.mount_hint.iter().for_each(|hint| warn(hint));
-    run.pause_warning().filter(|_| run.failure.is_none()).iter().for_each(|warning| warn(warning));
+    let warn = |problem: &String| console::warn(&format!("{}: {problem}", request.log.display()));
+    run.warnings(&input.log).iter().for_each(warn);
     console::print_result(args.common.quiet, &map_rows(&input.log, &run), &place.join("overview.png"));
     Ok(Outcome::unless(run.failure.map(|failure| format!("{}: {failure}", request.log.display()))))
 }

@@ -4,6 +4,7 @@ mod counts;
 mod depth_scans;
 mod input;
 mod known_stretches;
+mod live_view;
 mod log_input;
 mod mount_check;
 mod mount_steps;

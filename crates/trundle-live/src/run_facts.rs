@@ -57,8 +57,18 @@ impl RunFacts {
     /// The facts of a recorded sequence.
     #[must_use]
     pub fn of_sequence(path: &Path) -> Self {
+        Self::of_file("slam", path)
+    }
+
+    /// The facts of a log that is mapped.
+    #[must_use]
+    pub fn of_log(path: &Path) -> Self {
+        Self::of_file("map", path)
+    }
+
+    fn of_file(command: &str, path: &Path) -> Self {
         let name = path.file_name().unwrap_or(path.as_os_str()).display();
-        let (title, footprint) = (format!("slam: {name}"), Footprint::Disc { radius: CAMERA_RADIUS_M });
+        let (title, footprint) = (format!("{command}: {name}"), Footprint::Disc { radius: CAMERA_RADIUS_M });
         Self { kind: RunKind::Sequence, title, footprint, limits: DriveLimits::KOBUKI, recording: "" }
     }
 

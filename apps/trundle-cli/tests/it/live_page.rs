@@ -1,4 +1,4 @@
-//! The live page of `sim`, `slam`, `replay` and `experiment`, as a browser meets it.
+//! The live page of `sim`, `slam`, `map`, `replay` and `experiment`, as a browser meets it.
 
 use crate::program::{summary, text, trundle};
 use serde_json::{Value, json};
@@ -250,6 +250,42 @@ fn a_sequence_is_shown_while_it_is_tracked_and_its_results_are_the_same() {
     assert!(program.end().status.success());
     let names = ["trajectory.txt", "map.pgm", "visual.map", "recording.mcap"];
     assert!(files(&plain, &names) == files(&shown, &names));
+}
+
+#[test]
+fn a_log_is_shown_while_it_is_mapped_and_localized_and_its_results_are_the_same() {
+    let place = tempfile::tempdir().unwrap();
+    let script = place.path().join("drive.txt");
+    std::fs::write(&script, "0 0.3 0.2\n4 0.2 -0.3\n8 0 0\n").unwrap();
+    let data = place.path().join("data");
+    let record = ["sim", "demo", "--rate", "10", "--drive", text(&script), "--record", text(&data)];
+    assert!(trundle(&record).status.success());
+    let mapped = place.path().join("mapped");
+    for options in [&[][..], &["--map", text(&mapped.join("filter.map")), "--localise"]] {
+        let [plain, shown] = match options {
+            [] => [mapped.clone(), place.path().join("shown")],
+            _ => ["plain-localised", "shown-localised"].map(|name| place.path().join(name)),
+        };
+        let args = |out| [&["map", text(&data), "--out", out], options].concat();
+        assert!(trundle(&args(text(&plain))).status.success());
+        let program = LiveProgram::start(&args(text(&shown)));
+        let mut browser = program.browser();
+        assert_eq!(browser.wait_for("welcome", |_| true)["title"], "map: data");
+        let (states, notes) = browser.rest();
+        let activities = ["mapping", "localizing", "searching the pose"];
+        assert!(
+            states.iter().all(|state| activities.contains(&state["state"].as_str().unwrap())),
+            "{states:?}"
+        );
+        let series = notes.iter().rfind(|note| note["type"] == "series").unwrap();
+        assert_eq!((&series["unit"], &series["done"]), (&json!("scans"), &series["total"]), "{series}");
+        // Tiles and scan.
+        assert!([1, 2].iter().all(|kind| browser.kinds.contains(kind)), "{:?}", browser.kinds);
+        assert!(program.end().status.success());
+        assert!(files(&plain, &["trajectory.txt"]) == files(&shown, &["trajectory.txt"]));
+    }
+    let names = ["map.pgm", "filter.map", "overview.png"];
+    assert!(files(&mapped, &names) == files(&place.path().join("shown"), &names));
 }
 
 #[test]

@@ -12,7 +12,7 @@ pub struct KnownStretches {
 impl KnownStretches {
     /// Notes that the pose is unknown from `since` on.
     pub fn lose(&mut self, since: Stamp) {
-        if self.gaps.last().is_none_or(|(_, until)| until.is_some()) {
+        if self.is_known() {
             self.gaps.push((since, None));
         }
     }
@@ -22,6 +22,11 @@ impl KnownStretches {
         if let Some((_, until @ None)) = self.gaps.last_mut() {
             *until = Some(stamp);
         }
+    }
+
+    /// Whether the pose is known at the last noted stamp.
+    pub fn is_known(&self) -> bool {
+        self.gaps.last().is_none_or(|(_, until)| until.is_some())
     }
 
     /// The poses at all stamps of `odometry` from those of some of them, as [`propagated_poses`] gives them, without the

@@ -2,12 +2,14 @@
 
 use super::counts::ScanCounts;
 use super::known_stretches::KnownStretches;
+use super::live_view::LogFeed;
 use super::log_input::LogInput;
 use super::mount_check::mount_hint;
 use super::mount_steps::MountSteps;
 use super::numbers::{map_picture, summary, write_trajectory_lines};
 use super::request::LaserMapRequest;
 use super::run_result::LaserMapRun;
+use crate::operator::OperatorLink;
 use crate::{AppError, StepProgress, stop};
 use std::sync::Arc;
 use std::time::Instant;
@@ -29,7 +31,8 @@ struct ProcessedLog {
     megabytes: f64,
 }
 
-/// Maps a log, or with `localize_only` localizes the robot in the requested map; writes trajectory, map, picture and summary.
+/// Maps a log, or with `localize_only` localizes the robot in the requested map; writes trajectory, map, picture and summary. A front end of
+/// `link` watches the work.
 ///
 /// # Errors
 /// When the log or the map cannot be read, a setting is invalid or a file cannot be written.
@@ -39,19 +42,21 @@ pub fn map_log(
     input: &mut LogInput,
     folder: &OutputFolder,
     progress: &dyn StepProgress,
+    link: Option<OperatorLink>,
 ) -> Result<LaserMapRun, AppError> {
     let start = Instant::now();
+    let mut feed = link.map(LogFeed::new);
     let (done, failure) = match &request.map {
         Some(file) if localize_only => {
             let mut localizer = request.localizer(file, input.depth.as_ref())?;
-            let done = localize(input, &mut localizer, progress)?;
+            let done = localize(input, &mut localizer, progress, feed.as_mut())?;
             folder.write("overview.png", &map_picture(&localizer.grid(), &done.poses))?;
             let failure = failure(input, &done, None);
             (done, failure)
         }
         _ => {
             let mut mapper = request.mapper(input.depth.as_ref())?;
-            let done = map(input, &mut mapper, progress)?;
+            let done = map(input, &mut mapper, progress, feed.as_mut())?;
             write_map_as(folder, "map", mapper.grid(), request.map_image)?;
             folder.write("overview.png", &map_picture(mapper.grid(), &done.poses))?;
             folder.write("filter.map", &mapper.save())?;
@@ -88,6 +93,7 @@ fn map(
     input: &mut LogInput,
     mapper: &mut ParticleMapper,
     progress: &dyn StepProgress,
+    mut feed: Option<&mut LogFeed>,
 ) -> Result<ProcessedLog, AppError> {
     let (mut done, mut is_unit_wrong) = (ProcessedLog::default(), None);
     for_each_scan(input, progress, &mut done, |input, done, entry| {
@@ -97,6 +103,9 @@ fn map(
             ScanUpdate::Paused(pause) => done.known.lose(pause.since),
             ScanUpdate::Found(_) => done.known.find(entry.scan.stamp()),
             _ => {}
+        }
+        if let Some(feed) = &mut feed {
+            feed.note_mapped(&entry.scan, &done.counts, input.scan_count(), mapper);
         }
         done.counts.without_overlap < MAX_SCANS_OF_WRONG_UNIT
             || !*is_unit_wrong.get_or_insert_with(|| range_unit_hint(&input.log).is_some())
@@ -121,9 +130,10 @@ fn localize(
     input: &mut LogInput,
     localizer: &mut MapLocalizer,
     progress: &dyn StepProgress,
+    mut feed: Option<&mut LogFeed>,
 ) -> Result<ProcessedLog, AppError> {
     let mut done = ProcessedLog::default();
-    for_each_scan(input, progress, &mut done, |_, done, entry| {
+    for_each_scan(input, progress, &mut done, |input, done, entry| {
         let localized = localizer.update(entry.odom_from_base, &entry.scan);
         done.counts.count_localized(&localized);
         let stamp = entry.scan.stamp();
@@ -134,6 +144,10 @@ fn localize(
             }
             Localized::Lost(_) => done.known.lose(stamp),
             Localized::Still | Localized::Refused(_) => {}
+        }
+        if let Some(feed) = &mut feed {
+            let pose = done.poses.last().filter(|_| done.known.is_known()).map(|(_, pose)| *pose);
+            feed.note_localized(&entry.scan, pose, &done.counts, input.scan_count(), localizer);
         }
         true
     })?;

@@ -65,9 +65,17 @@ impl LaserMapRun {
         Some(format!("{failure}: {}", empty_map_cause(log)))
     }
 
-    /// A warning about scans that pauses of mapping left out; `None` without a pause.
+    /// Warnings about skipped entries, impossible ranges, another mount of the laser, and scans that pauses of mapping left out.
     #[must_use]
-    pub fn pause_warning(&self) -> Option<String> {
+    pub fn warnings(&self, log: &LaserLog) -> Vec<String> {
+        let warnings = log.warnings();
+        let of_log = warnings.iter().map(|warning| warning.to_string());
+        let of_pauses = self.pause_warning().filter(|_| self.failure.is_none());
+        of_log.chain(self.mount_hint.clone()).chain(of_pauses).collect()
+    }
+
+    /// A warning about scans that pauses of mapping left out; `None` without a pause.
+    fn pause_warning(&self) -> Option<String> {
         let counts = &self.counts;
         (counts.pauses > 0).then(|| format!("{} scans are left out: {}", counts.left_out, pause_note(counts)))
     }

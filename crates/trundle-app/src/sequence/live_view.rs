@@ -1,18 +1,14 @@
 //! Views of a tracked sequence for a front end that watches.
 
 use crate::operator::{
-    Activity, DepthViewpoint, ImageFeed, MapView, OperatorLink, PerceptionFeed, PerceptionView, RunCounts,
-    RunView, SeriesView, VisualMapFeed, on_floor,
+    Activity, DepthViewpoint, ImageFeed, MapCopy, OperatorLink, PerceptionFeed, PerceptionView, RunCounts,
+    RunView, SeriesView, VisualMapFeed, on_floor, twist_between,
 };
 use std::sync::Arc;
-use std::time::{Duration, Instant};
-use trundle_core::{Hypotenuse, PinholeCamera, Pose2, Pose3, RgbdImage, Scan, Stamp, Twist2};
+use trundle_core::{PinholeCamera, Pose2, Pose3, RgbdImage, Scan, Stamp, Twist2};
 use trundle_mapping::{GridMapper, MapperConfig};
 use trundle_runtime::{LevelMap, Stage, StageTimes};
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
-
-/// Time between two copies of the map. Source: ours; the period of a robot's map.
-const MAP_PERIOD: Duration = Duration::from_secs(1);
 
 /// Makes views of a tracked sequence. Without a watching front end, a view contains only pose and counts.
 pub(super) struct SequenceFeed {
@@ -48,7 +44,7 @@ impl SequenceFeed {
             depth_pose: None,
             perception: PerceptionFeed::default(),
             visual_map: VisualMapFeed::default(),
-            map: MapFeed { config, mapper: None, count: 0, view: None, copied: None },
+            map: MapFeed { config, mapper: None, count: 0, copy: MapCopy::default() },
             scan: None,
             tracked: 0,
             last: None,
@@ -100,7 +96,7 @@ impl SequenceFeed {
     fn view(&mut self, report: &TrackReport, pose: Pose2, tracker: &Tracker<'_>) -> RunView {
         let stamp = report.stamp;
         let twist =
-            self.last.replace((stamp, pose)).map_or(Twist2::ZERO, |last| twist_since(last, (stamp, pose)));
+            self.last.replace((stamp, pose)).map_or(Twist2::ZERO, |last| twist_between(last, (stamp, pose)));
         let reason = format!(
             "features on the map: {} of {}, keyframes: {}, landmarks: {}",
             report.inliers, report.features, report.keyframes, report.landmarks
@@ -111,7 +107,7 @@ impl SequenceFeed {
         RunView {
             scan_pose: self.scan.as_ref().map(|(base, _)| *base),
             scan: self.scan.as_ref().map(|(_, scan)| Arc::clone(scan)),
-            map: self.map.view.clone(),
+            map: self.map.copy.view(),
             perception: self.perception(),
             counts: RunCounts {
                 slam: self.tracked,
@@ -130,8 +126,7 @@ struct MapFeed {
     mapper: Option<GridMapper>,
     /// Scans that the mapper has.
     count: usize,
-    view: Option<Arc<MapView>>,
-    copied: Option<Instant>,
+    copy: MapCopy,
 }
 
 impl MapFeed {
@@ -147,29 +142,15 @@ impl MapFeed {
         {
             mapper.insert(base, scan);
         }
-        let is_due = self.copied.is_none_or(|copied| copied.elapsed() >= MAP_PERIOD);
-        let is_new = is_corrected || self.view.as_ref().is_none_or(|view| view.revision != count as u64);
         self.count = count;
-        if let (true, Some(mapper)) = (is_due && is_new, &self.mapper) {
-            let grid = mapper.grid().clone();
-            self.view = Some(Arc::new(MapView { number: 0, revision: count as u64, grid }));
-            self.copied = Some(Instant::now());
+        if let Some(mapper) = &self.mapper {
+            self.copy.update(count as u64, is_corrected, || mapper.grid().clone());
         }
     }
 }
 
 fn redrawn(tracker: &Tracker<'_>, config: &MapperConfig) -> Option<GridMapper> {
     tracker.map.mapper(&tracker.slam.trajectory(), config.clone()).ok()
-}
-
-fn twist_since((then, before): (Stamp, Pose2), (now, pose): (Stamp, Pose2)) -> Twist2 {
-    let seconds = now - then;
-    let step = before.inverse() * pose;
-    if seconds > 0.0 {
-        Twist2::new(step.x.hypotenuse(step.y) / seconds, step.theta / seconds)
-    } else {
-        Twist2::ZERO
-    }
 }
 
 fn state_name(tracking: Tracking) -> &'static str {

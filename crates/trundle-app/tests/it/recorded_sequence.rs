@@ -93,7 +93,7 @@ fn the_depth_images_of_a_recording_make_a_map() {
     let mut input = read_log(&request, &()).unwrap();
     assert!(input.depth.as_ref().is_some_and(|depth| depth.by_wheels) && input.log.scans.len() > 5);
     let folder = OutputFolder::create(&scratch.path().join("map")).unwrap();
-    let run = map_log(&request, false, &mut input, &folder, &()).unwrap();
+    let run = map_log(&request, false, &mut input, &folder, &(), None).unwrap();
     assert_eq!(run.failure, None);
 }
 
