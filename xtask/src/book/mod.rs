@@ -3,6 +3,7 @@
 mod build;
 mod commands;
 mod html_links;
+mod interrupted;
 mod page_run;
 pub mod repository_links;
 mod script;

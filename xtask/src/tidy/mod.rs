@@ -23,6 +23,7 @@ mod prose;
 mod purity;
 mod results_page;
 mod shape;
+mod shell_blocks;
 mod source;
 mod tree;
 mod type_names;
@@ -79,6 +80,7 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
         glossary::check,
         purity::check,
         shape::check,
+        shell_blocks::check,
         leftovers::check,
         lockfile::check,
         manifest::check,
