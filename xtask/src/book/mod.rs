@@ -1,6 +1,6 @@
 //! The book: docs as HTML by mdbook, its links, and the commands that its pages show.
 
-mod build;
+pub mod build;
 mod commands;
 mod html_links;
 mod interrupted;

@@ -14,6 +14,7 @@ mod constants;
 mod finding;
 mod glossary;
 mod leftovers;
+mod libraries_page;
 mod lockfile;
 mod manifest;
 mod markdown;
@@ -82,6 +83,7 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
         shape::check,
         shell_blocks::check,
         leftovers::check,
+        libraries_page::check,
         lockfile::check,
         manifest::check,
         markdown::check,
