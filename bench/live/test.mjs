@@ -183,9 +183,13 @@ const kept = new Set([main.context, gauge.context()]);
 const taken = new Map();
 /** The states whose pictures are compared with references. */
 const STATES = ["goal", "refused", "explore-dark", "explore-light", "sim", "slam", "experiment"];
+/** The pictures that docs show: with $UPDATE_PICTURES they are replaced. */
+const SHOWN = { "explore-dark": "live.png", goal: "live-goal.png", "zone-drawing": "live-zone.png", past: "live-past.png" };
 const picture = async (name, of = page) => {
   if (STATES.includes(name)) await of.evaluate(() => document.getElementById("side").scrollTo(0, 0));
-  taken.set(name, await of.screenshot({ path: join(pictures, `${name}.png`) }));
+  const png = await of.screenshot({ path: join(pictures, `${name}.png`) });
+  taken.set(name, png);
+  if (process.env.UPDATE_PICTURES && SHOWN[name]) writeFileSync(join(import.meta.dirname, "../../docs/pictures", SHOWN[name]), png);
 };
 
 await check("the page loads and says what the robot does", async () => {

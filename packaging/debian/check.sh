@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The Debian package of the release program: built, its content checked, unpacked, and its program run. Skipped by name if cargo-deb is
-# neither installed nor can be built from its registry (1 minute), or without dpkg.
+# The Debian packages of the release program, for this computer and for arm64: built, their content checked, unpacked, and their programs
+# run, that of arm64 by qemu. Skipped by name if cargo-deb is neither installed nor can be built from its registry (1 minute), or without
+# dpkg; that of arm64 also without the target or qemu. Its program is that of `cargo xtask aarch64`.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -10,3 +11,4 @@ if ! cargo deb --version >/dev/null 2>&1 && [ ! -x "$tools/bin/cargo-deb" ]; the
 fi
 PATH=$PATH:$tools/bin
 cargo xtask deb --profile release
+cargo xtask deb --profile release --arm64

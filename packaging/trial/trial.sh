@@ -1,20 +1,25 @@
 #!/usr/bin/env bash
-# Each way to install trundle, tried in a bare Debian 12: from an empty system to the first picture, with the minutes of each step.
+# Each way to install trundle, tried in a bare Debian 12: from an empty system to the first result, with the minutes of each step.
 #
-# usage: trial.sh FOLDER [--package FILE.deb] WAY...      WAY: package, source, python
+# usage: trial.sh FOLDER [--package FILE.deb] [--rust-of-host] WAY...      WAY: package, source, crate, python
 #
-# Runs as root on Linux, and needs debootstrap, git, and a Rust toolchain on this machine. FOLDER gets about 4 GB. The system of each way
-# is unpacked anew, so that no way uses what another one installed. The sources are a clone of the last commit of this checkout. The Rust
-# toolchain and the downloaded crates of this machine are bound into the system: the minutes do not include their download.
-# Results: FOLDER/WAY.log, FOLDER/WAY.png, and a table on standard output. The exit code is 1 if a way gives no picture.
+# Runs as root on Linux, and needs debootstrap and git on this machine. FOLDER gets about 4 GB. The system of each way is unpacked anew, so
+# that no way uses what another one installed. The sources are a clone of the last commit of this checkout. A way that builds gets Rust by
+# rustup, and its crates from their registry: the minutes include both downloads. With --rust-of-host it gets this machine's toolchain and
+# downloaded crates, and the minutes do not.
+# Results: FOLDER/WAY.log, FOLDER/WAY.png (way crate: a plan in its log), and a table on standard output. The exit code is 1 if a way fails.
 set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 [ $# -ge 2 ] || { sed -n '2,/^set/p' "$0" | grep '^#' >&2; exit 2; }
 work=$(realpath -m "$1"); shift
 package=
 if [ "$1" = --package ]; then package=$(realpath "$2"); shift 2; fi
+is_rust_of_host=false
+if [ "$1" = --rust-of-host ]; then is_rust_of_host=true; shift; fi
 mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
 system=$work/system
+# The version that the sources ask for.
+rust=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' "$repository/Cargo.toml")
 mkdir -p "$work"
 
 # The bare system: what debootstrap calls minbase, once, as an archive.
@@ -41,14 +46,20 @@ enter() {
     : >"$work/$1.log"
 }
 
-# Binds the Rust toolchain and the crates of this machine, and clones the sources: for the ways that build.
+# rust_and_sources WAY PACKAGES: clones the sources, and installs Debian's packages and Rust: for the ways that build.
 rust_and_sources() {
-    mkdir -p "$system/opt/rust" "$system/root/.cargo/registry"
-    mount --bind "$(rustc --print sysroot)" "$system/opt/rust" && mount -o remount,ro,bind "$system/opt/rust"
-    mount --bind "${CARGO_HOME:-$HOME/.cargo}/registry" "$system/root/.cargo/registry"
     git clone --quiet --depth 1 "file://$repository" "$system/root/trundle"
     # A proxy of this network may have its own certificates.
     cp -L /etc/ssl/certs/ca-certificates.crt "$system/opt/"
+    if $is_rust_of_host; then
+        mkdir -p "$system/opt/rust" "$system/root/.cargo/registry"
+        mount --bind "$(rustc --print sysroot)" "$system/opt/rust" && mount -o remount,ro,bind "$system/opt/rust"
+        mount --bind "${CARGO_HOME:-$HOME/.cargo}/registry" "$system/root/.cargo/registry"
+        step "$1" "Debian's packages" "apt-get update && apt-get install -y --no-install-recommends $2"
+        return
+    fi
+    step "$1" "Debian's packages" "apt-get update && apt-get install -y --no-install-recommends curl ca-certificates $2" &&
+        step "$1" "rustup" "curl --proto '=https' --tlsv1.2 -sSf https://sh.rustup.rs | sh -s -- -y --profile minimal --default-toolchain $rust"
 }
 
 # step WAY NAME COMMAND: runs the command in the system, and notes its minutes.
@@ -56,8 +67,9 @@ step() {
     local begin code=0
     begin=$(date +%s)
     printf '== %s: %s\n' "$2" "$3" >>"$work/$1.log"
-    chroot "$system" /usr/bin/env -i HOME=/root PATH=/opt/rust/bin:/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb DEBIAN_FRONTEND=noninteractive \
-        PIP_CERT=/opt/ca-certificates.crt CARGO_HTTP_CAINFO=/opt/ca-certificates.crt \
+    chroot "$system" /usr/bin/env -i HOME=/root PATH=/opt/rust/bin:/root/.cargo/bin:/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb DEBIAN_FRONTEND=noninteractive \
+        PIP_CERT=/opt/ca-certificates.crt CARGO_HTTP_CAINFO=/opt/ca-certificates.crt CURL_CA_BUNDLE=/opt/ca-certificates.crt \
+        SSL_CERT_FILE=/opt/ca-certificates.crt \
         bash -ec "cd /root; $3" >>"$work/$1.log" 2>&1 </dev/null || code=$?
     awk -v way="$1" -v name="$2" -v s=$(($(date +%s) - begin)) -v code="$code" \
         'BEGIN { printf "| %s | %s | %.1f | %s |\n", way, name, s / 60, code ? "failed, exit code " code : "ok" }'
@@ -79,15 +91,22 @@ way_package() {
 }
 
 way_source() {
-    rust_and_sources
-    step source "linker" "apt-get update && apt-get install -y --no-install-recommends gcc libc6-dev" &&
-        step source "build" "cd trundle && cargo build --release" &&
-        step source "demo" "cd trundle && cargo run --release -- demo --scene room --direct" && picture source trundle/out/demo/map.png
+    rust_and_sources source "gcc libc6-dev" &&
+        step source "cargo install" "cd trundle && cargo install --path apps/trundle-cli --profile dist --locked" &&
+        step source "demo" "trundle demo --scene room --direct" && picture source out/demo/map.png
+}
+
+# A program that uses the planner alone. Until the first release the crate comes from the sources instead of crates.io.
+way_crate() {
+    rust_and_sources crate "gcc libc6-dev" &&
+        step crate "cargo new" "cargo new --vcs none planner && cd planner &&
+            cargo add trundle --path ../trundle/crates/trundle --no-default-features --features planning &&
+            cp ../trundle/crates/trundle/examples/03_plan_on_a_map.rs src/main.rs" &&
+        step crate "first plan" "cd planner && cargo run --release | grep 'm of clearance'"
 }
 
 way_python() {
-    rust_and_sources
-    step python "Python and linker" "apt-get update && apt-get install -y --no-install-recommends python3-venv gcc libc6-dev" &&
+    rust_and_sources python "python3-venv gcc libc6-dev" &&
         step python "pip install" "python3 --version && python3 -m venv venv && cd trundle && ../venv/bin/pip install ./python" &&
         step python "first map" "awk '/\`\`\`python/ { on = 1; next } /\`\`\`/ { if (on) exit } on' trundle/docs/tutorials/python.md | sed 's/^   //' >first.py &&
             venv/bin/python first.py" && picture python map.png
@@ -97,7 +116,7 @@ echo "| way | step | minutes | result |"
 echo "|---|---|---|---|"
 missed=0
 for way in "$@"; do
-    case $way in package | source | python) ;; *) echo "no way '$way': package, source or python" >&2; exit 2 ;; esac
+    case $way in package | source | crate | python) ;; *) echo "no way '$way': package, source, crate or python" >&2; exit 2 ;; esac
     enter "$way"
     "way_$way" || { missed=1; tail -n 5 "$work/$way.log" >&2; }
 done

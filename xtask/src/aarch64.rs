@@ -97,6 +97,12 @@ pub fn run(root: &Path) -> Verdict {
     compare(root, &tools, program)
 }
 
+/// The words before a program of aarch64 that run it on this computer; none without an emulator and its libraries.
+pub fn emulator() -> Option<[PathBuf; 3]> {
+    let emulator = EMULATORS.into_iter().find(|name| answers(name)).filter(|_| Path::new(LIBRARIES).is_dir());
+    emulator.map(|emulator| [emulator.into(), "-L".into(), LIBRARIES.into()])
+}
+
 /// Builds the release program for aarch64, with all its features; its path.
 pub fn release_trundle(root: &Path) -> Result<PathBuf, String> {
     let build = ["build", "--release", "--target", TARGET, "--package", "trundle-cli"];

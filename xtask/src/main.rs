@@ -21,6 +21,7 @@ mod ros_interfaces;
 mod seeds;
 mod semver;
 mod settings;
+mod shell_block;
 mod states;
 mod tidy;
 mod workspace;

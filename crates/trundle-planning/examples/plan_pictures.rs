@@ -1,4 +1,5 @@
-//! Draws the pictures of docs/algorithms/planning.md: `cargo run --release -p trundle-planning --example plan_pictures`.
+//! Draws the pictures of docs/algorithms/planning.md: `cargo xtask pictures planning`, which calls
+//! `cargo run --release -p trundle-planning --example plan_pictures -- FOLDER`.
 
 #![expect(clippy::unwrap_used, reason = "a program for the terminal")]
 
@@ -101,8 +102,8 @@ impl Picture {
     }
 
     fn save(self, name: &str) {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/pictures/planning");
-        std::fs::create_dir_all(folder).unwrap();
+        let folder = std::env::args().nth(1).expect("the folder of the pictures");
+        std::fs::create_dir_all(&folder).unwrap();
         let (w, h) = (self.size.x * SCALE, self.size.y * SCALE);
         let head =
             format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {w:.0} {h:.0}' width='{w:.0}'>");

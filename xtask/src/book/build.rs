@@ -1,4 +1,4 @@
-//! The build of the book by mdbook, its links and its search; skipped by name without mdbook.
+//! The build of the book by mdbook, with the references of the crates beside it, its links and its search; skipped by name without mdbook.
 
 use super::html_links;
 use crate::program::{self, answers};
@@ -11,6 +11,11 @@ const TOOL: &str = "book-tools/bin/mdbook";
 /// The script that searches the book.
 const SEARCH: &str = "bench/book/search.mjs";
 
+/// Writes the reference of every crate, beside the book; warnings are errors.
+pub fn references(root: &Path) -> Verdict {
+    program::cargo(root, &["doc", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-Dwarnings")])
+}
+
 /// Builds the book, checks the links of its pages and searches in it. Without mdbook the build is skipped.
 pub fn run(root: &Path) -> Verdict {
     let Some(mdbook) = mdbook(root)? else {
@@ -20,6 +25,9 @@ pub fn run(root: &Path) -> Verdict {
         return Ok(true);
     };
     let folder = program::scratch(root, "book")?;
+    if !references(root)? {
+        return Ok(false);
+    }
     if !ends_well(Command::new(&mdbook).args(["build", "--dest-dir"]).arg(&folder).current_dir(root))? {
         return Ok(false);
     }

@@ -1,15 +1,18 @@
-//! Commands that pages of docs show: blocks of `sh tested` run, and blocks of `text output` are compared with their output.
+//! Commands that pages of docs show: blocks of `sh tested` run, and blocks of `text output` are compared with their output. With the mark
+//! `interrupt=N` each command of the block gets Ctrl-C after N seconds; with `in=clone` the block runs in the folder of the sources.
 
+use super::interrupted;
 use super::page_run::PageRun;
 use crate::markdown::{Block, blocks, pages};
+use crate::shell_block::{self, ShellBlock};
 use crate::workspace::Verdict;
 use std::path::Path;
 
 /// A step of a page.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 enum Step {
-    /// A script that runs.
-    Script,
+    /// A script that runs, in the page's folder or in that of the sources.
+    Script { text: String, is_in_clone: bool },
     /// Lines that the last script must have printed.
     Output,
 }
@@ -39,7 +42,8 @@ fn run_page(root: &Path, trundle: &Path, name: &str, text: &str) -> Result<Resul
     let mut run = PageRun::new(root, trundle, name)?;
     for (step, block) in steps {
         let result = match step {
-            Step::Script => run.script(&block.text)?,
+            Step::Script { text, is_in_clone: true } => run.script_in_clone(&text)?,
+            Step::Script { text, is_in_clone: false } => run.script(&text)?,
             Step::Output => run.compare(&block.text),
         };
         if let Err(why) = result {
@@ -50,11 +54,15 @@ fn run_page(root: &Path, trundle: &Path, name: &str, text: &str) -> Result<Resul
 }
 
 fn step(block: &Block) -> Option<Step> {
-    match block.info.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["sh", "tested"] => Some(Step::Script),
-        ["text", "output"] => Some(Step::Output),
-        _ => None,
+    if block.info == ["text", "output"] {
+        return Some(Step::Output);
     }
+    // Tidy refuses a wrong mark.
+    let Some(Ok(ShellBlock::Tested { interrupt_s, is_in_clone })) = shell_block::read(&block.info) else {
+        return None;
+    };
+    let text = interrupt_s.map(|seconds| interrupted::script(&block.text, seconds));
+    Some(Step::Script { text: text.unwrap_or_else(|| block.text.clone()), is_in_clone })
 }
 
 #[cfg(test)]
@@ -70,6 +78,18 @@ mod tests {
     fn a_page_passes_if_its_scripts_and_their_output_do() {
         let text = "```sh tested\nprintf 'a  1\\nb 2\\nc 3\\n' > x; cat x\n```\n```text output\n  a 1\n...\nc 3\n```\n```sh\nfalse\n```";
         assert_eq!(page(text), Ok(()));
+    }
+
+    #[test]
+    fn marks_give_the_folder_and_an_end() {
+        assert_eq!(
+            page("```sh tested in=clone\ntest -f Cargo.lock\n```\n```sh tested interrupt=1\ntrue\n```"),
+            Ok(())
+        );
+        assert!(page("```sh tested\ntest -f Cargo.lock\n```").is_err());
+        let lasting =
+            "```sh tested interrupt=1\nsh -c 'trap \"exit 130\" INT; while :; do sleep 0.05; done'\n```";
+        assert_eq!(page(lasting), Ok(()));
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! The book: docs as HTML by mdbook, its links, and the commands that its pages show.
 
-mod build;
+pub mod build;
 mod commands;
 mod html_links;
+mod interrupted;
 mod page_run;
 pub mod repository_links;
 mod script;

@@ -12,6 +12,7 @@ const ELLIPSIS: &str = "...";
 
 /// The state of a page: its folder, and what the last script printed.
 pub struct PageRun {
+    root: PathBuf,
     page: String,
     folder: PathBuf,
     path: OsString,
@@ -26,15 +27,26 @@ impl PageRun {
         let path = std::env::var_os("PATH").unwrap_or_default();
         let path = std::env::join_paths([own].into_iter().chain(std::env::split_paths(&path)))
             .map_err(|e| format!("{}: {e}", trundle.display()))?;
-        Ok(Self { page: page.to_owned(), folder, path, output: String::new() })
+        Ok(Self { root: root.to_path_buf(), page: page.to_owned(), folder, path, output: String::new() })
     }
 
     /// Runs a script up to its first failing command, with the page's folder as home. The inner error is the end with the output.
     pub fn script(&mut self, text: &str) -> Result<Result<(), String>, String> {
-        let start = Instant::now();
         let mut shell = Command::new("sh");
-        shell.args(["-e", "-u", "-c", text]).current_dir(&self.folder);
-        shell.env("PATH", &self.path).env("HOME", &self.folder);
+        shell.current_dir(&self.folder).env("HOME", &self.folder);
+        self.run(shell, text)
+    }
+
+    /// Runs a script as [`PageRun::script`], in the folder of the sources and with the user's home: cargo finds its packages there.
+    pub fn script_in_clone(&mut self, text: &str) -> Result<Result<(), String>, String> {
+        let mut shell = Command::new("sh");
+        shell.current_dir(&self.root);
+        self.run(shell, text)
+    }
+
+    fn run(&mut self, mut shell: Command, text: &str) -> Result<Result<(), String>, String> {
+        let start = Instant::now();
+        shell.args(["-e", "-u", "-c", text]).env("PATH", &self.path);
         let end = script::run(shell)?;
         self.output = end.output;
         let seconds = start.elapsed().as_secs_f64();

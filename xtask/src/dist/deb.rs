@@ -46,16 +46,21 @@ pub fn run(root: &Path, options: &Options) -> Verdict {
     for (tool, _, remedy) in &missing {
         println!("  skipped: the Debian package needs {tool}: {remedy}");
     }
-    let has_target = !is_arm64 || aarch64::builds();
-    if !has_target {
-        println!(
-            "  skipped: the Debian package of arm64 needs the compiler of {TARGET} (cargo xtask aarch64)"
-        );
+    let is_dist = options.profile == super::PROFILE;
+    let emulator = aarch64::emulator();
+    let lacks = [
+        (!aarch64::builds(), "the compiler of"),
+        // The release program of aarch64 is built by `cargo xtask aarch64`, which needs an emulator.
+        (!is_dist && emulator.is_none(), "an emulator of"),
+    ];
+    let lacks: Vec<&str> =
+        lacks.iter().filter(|(lacks, _)| is_arm64 && *lacks).map(|(_, what)| *what).collect();
+    for what in &lacks {
+        println!("  skipped: the Debian package of arm64 needs {what} {TARGET} (cargo xtask aarch64)");
     }
-    if !missing.is_empty() || !has_target {
+    if !missing.is_empty() || !lacks.is_empty() {
         return Ok(true);
     }
-    let is_dist = options.profile == super::PROFILE;
     let own = if is_dist { build(root, None) } else { program::trundle(root, &options.profile) }?;
     let program = match (is_arm64, is_dist) {
         (false, _) => own.clone(),
@@ -65,7 +70,8 @@ pub fn run(root: &Path, options: &Options) -> Verdict {
     collect(root, &own, &program.with_file_name("deb"))?;
     let package = pack(root, options)?;
     println!("{}\nsha256: {}", package.display(), sha256(&package)?);
-    let findings = deb_content::check(root, &package, !is_arm64)?;
+    let runner = if is_arm64 { emulator.map(Vec::from) } else { Some(Vec::new()) };
+    let findings = deb_content::check(root, &package, runner.as_deref())?;
     findings.iter().for_each(|finding| println!("{finding}"));
     println!("deb: {} errors", findings.len());
     Ok(findings.is_empty())

@@ -1,8 +1,14 @@
 //! Content of the Debian package: its files, and the program and the service of an unpacked system.
 
 use crate::program::{self, answers, output};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+
+/// Largest exposure of the service, ten times the figure of `systemd-analyze security`, which goes from 0 (safe) to 10. Source: ours, the
+/// service has 1.9: it needs devices, the network and two groups.
+const MAX_EXPOSURE: &str = "20";
+/// Why `systemd-analyze` checks nothing.
+const NO_SYSTEMD: &str = "skipped: the check of the service needs systemd-analyze: apt-get install systemd";
 
 /// Files that the package has, with their rights.
 const EXPECTED: [(&str, &str); 11] = [
@@ -19,17 +25,19 @@ const EXPECTED: [(&str, &str); 11] = [
     ("-rw-r--r--", "./usr/share/doc/trundle/copyright"),
 ];
 
-/// The findings of a package, one sentence each; `runs_here`: its program is one of this computer.
-pub fn check(root: &Path, package: &Path, runs_here: bool) -> Result<Vec<String>, String> {
+/// The findings of a package, one sentence each. `runner`: the words before its program that run it here; without them it does not run.
+pub fn check(root: &Path, package: &Path, runner: Option<&[PathBuf]>) -> Result<Vec<String>, String> {
     let path = package.display().to_string();
     let list = output(Path::new("dpkg-deb"), &["-c", &path])?;
     let mut findings = missing(&String::from_utf8_lossy(&list));
     let system = program::scratch(root, "deb-root")?;
     output(Path::new("dpkg-deb"), &["-x", &path, &system.display().to_string()])?;
-    if runs_here {
-        findings.extend(try_program(&system).err());
+    match runner {
+        Some(runner) => findings.extend(try_program(&system, runner).err()),
+        None => println!("  skipped: the program of the package does not run without an emulator"),
     }
     findings.extend(verify_service(&system));
+    findings.extend(exposed(&system.join("usr/lib/systemd/system/trundle@.service")));
     findings.extend(lintian(package));
     Ok(findings)
 }
@@ -44,13 +52,18 @@ fn missing(list: &str) -> Vec<String> {
 }
 
 /// Runs the program of the unpacked system: its version, its own robot file, and this computer's check.
-fn try_program(system: &Path) -> Result<(), String> {
-    let program = system.join("usr/bin/trundle");
-    let version = String::from_utf8_lossy(&output(&program, &["-V"])?).trim().to_owned();
-    println!("  {version}");
+fn try_program(system: &Path, runner: &[PathBuf]) -> Result<(), String> {
+    let own = system.join("usr/bin/trundle");
+    let words: Vec<String> = runner.iter().chain([&own]).map(|word| word.display().to_string()).collect();
+    let (program, before) = (Path::new(&words[0]), &words[1..]);
+    let args =
+        |args: &[&str]| [before, &args.iter().map(|arg| (*arg).to_owned()).collect::<Vec<_>>()].concat();
+    let printed =
+        |given: &[&str]| output(program, &args(given).iter().map(String::as_str).collect::<Vec<_>>());
+    println!("  {}", String::from_utf8_lossy(&printed(&["-V"])?).trim());
     let config = system.join("etc/trundle/robot.toml").display().to_string();
-    output(&program, &["config", "--quiet", &config])?;
-    let checks = Command::new(&program).args(["doctor", "--json"]).stdin(Stdio::null()).output();
+    printed(&["config", "--quiet", &config])?;
+    let checks = Command::new(program).args(args(&["doctor", "--json"])).stdin(Stdio::null()).output();
     let checks = checks.map_err(|e| format!("cannot start {}: {e}", program.display()))?;
     let is_json = serde_json::from_slice::<serde_json::Value>(&checks.stdout).is_ok();
     is_json.then_some(()).ok_or("trundle doctor --json of the package is not JSON".to_owned())
@@ -59,7 +72,7 @@ fn try_program(system: &Path) -> Result<(), String> {
 /// What `systemd-analyze verify` has against the service; skipped by name without it.
 fn verify_service(system: &Path) -> Option<String> {
     if !answers("systemd-analyze", "--version") {
-        println!("  skipped: the check of the service needs systemd-analyze");
+        println!("  {NO_SYSTEMD}");
         return None;
     }
     let unit = system.join("usr/lib/systemd/system/trundle@.service");
@@ -73,6 +86,21 @@ fn verify_service(system: &Path) -> Option<String> {
     let output = verify.output().ok()?;
     let why = String::from_utf8_lossy(&output.stderr).trim().to_owned();
     (!output.status.success()).then(|| format!("systemd-analyze verify: {why}"))
+}
+
+/// A sentence if the service of a unit file can do more than [`MAX_EXPOSURE`] allows; skipped by name without systemd-analyze.
+fn exposed(unit: &Path) -> Option<String> {
+    if !answers("systemd-analyze", "--version") {
+        println!("  {NO_SYSTEMD}");
+        return None;
+    }
+    let mut security = Command::new("systemd-analyze");
+    security.args(["security", "--offline=yes", "--no-pager", &format!("--threshold={MAX_EXPOSURE}")]);
+    let output = security.arg(unit).stdin(Stdio::null()).output().ok()?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let level = text.lines().last().unwrap_or("no result").trim_start_matches('→').trim().to_owned();
+    (!output.status.success())
+        .then(|| format!("systemd-analyze security: {level}, at most {MAX_EXPOSURE} tenths expected"))
 }
 
 /// The errors that lintian finds; skipped by name without it.
@@ -100,6 +128,35 @@ mod tests {
         assert!(missing(&whole).is_empty());
         let wrong = whole.replace("-rwxr-xr-x", "-rw-r--r--").replace("robot.conf", "other.conf");
         assert_eq!(missing(&wrong).len(), 2);
+    }
+
+    #[test]
+    fn the_service_has_no_more_rights_than_it_needs() {
+        let unit = crate::workspace::root().join("packaging/debian/trundle@.service");
+        assert_eq!(exposed(&unit), None);
+        if !answers("systemd-analyze", "--version") {
+            return;
+        }
+        let open = std::fs::read_to_string(&unit).unwrap().replace("DynamicUser=yes", "DynamicUser=no");
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("trundle@.service");
+        std::fs::write(&file, open).unwrap();
+        let why = exposed(&file).unwrap();
+        assert!(why.contains("exposure level"), "{why}");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn the_program_of_the_package_runs_by_its_runner() {
+        use std::os::unix::fs::PermissionsExt;
+        let system = tempfile::tempdir().unwrap();
+        let program = system.path().join("usr/bin/trundle");
+        std::fs::create_dir_all(program.parent().unwrap()).unwrap();
+        std::fs::write(&program, "[ -n \"$EMULATED\" ] && echo '{}'\n").unwrap();
+        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o644)).unwrap();
+        let runner = ["env", "EMULATED=1", "sh"].map(PathBuf::from);
+        assert_eq!(try_program(system.path(), &runner), Ok(()));
+        assert!(try_program(system.path(), &runner[..1]).is_err());
     }
 
     /// A file that is listed in the manifest and not checked could vanish.

@@ -59,15 +59,19 @@ fn build_with(root: &Path, target: Option<&str>, features: &str) -> Result<PathB
 
 /// Flags of the compiler that replace this machine's folders in the program: sources, build results, registry.
 fn flags(root: &Path) -> Result<String, String> {
+    Ok(flags_of(root, &program::target(root)?))
+}
+
+/// The flags for the folders of the sources and of the build results.
+fn flags_of(root: &Path, target: &Path) -> String {
     let home = std::env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
     let cargo = std::env::var_os("CARGO_HOME").map_or_else(|| home.join(".cargo"), PathBuf::from);
-    let target = program::target(root)?;
     let mut folders = vec![(root, "/trundle"), (cargo.as_path(), "/cargo")];
     // The last prefix that fits counts; within the sources, the build results are named as theirs.
-    folders.extend((!target.starts_with(root)).then_some((target.as_path(), "/trundle/target")));
+    folders.extend((!target.starts_with(root)).then_some((target, "/trundle/target")));
     let flags =
         folders.iter().map(|(folder, name)| format!("--remap-path-prefix={}={name}", folder.display()));
-    Ok(flags.collect::<Vec<_>>().join(" "))
+    flags.collect::<Vec<_>>().join(" ")
 }
 
 /// SHA-256 of a file, in hexadecimal digits, by the system's program.

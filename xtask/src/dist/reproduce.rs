@@ -50,3 +50,44 @@ fn git(root: &Path, args: &[&str]) -> Result<String, String> {
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    /// A program whose bytes name its sources: a panic, and a path in its text.
+    const SOURCE: &str = "fn main() { assert!(std::env::args().count() < 9, \"{}\", file!()); }\n";
+
+    /// Builds a small program in a folder as one of a release: with its flags, and the workspace's profile.
+    fn small_program(root: &Path) -> PathBuf {
+        std::fs::create_dir_all(root.join("src")).unwrap();
+        std::fs::write(root.join("src/main.rs"), SOURCE).unwrap();
+        let text = std::fs::read_to_string(crate::workspace::root().join("Cargo.toml")).unwrap();
+        let manifest: toml::Table = text.parse().unwrap();
+        let mut profiles = toml::Table::new();
+        for name in ["release", "dist"] {
+            let mut profile = manifest["profile"][name].as_table().unwrap().clone();
+            profile.remove("package");
+            profiles.insert(name.to_owned(), profile.into());
+        }
+        let package = "[package]\nname = \"small\"\nversion = \"0.1.0\"\nedition = \"2024\"\n[workspace]\n";
+        let profiles =
+            toml::to_string(&toml::Table::from_iter([("profile".to_owned(), profiles.into())])).unwrap();
+        std::fs::write(root.join("Cargo.toml"), format!("{package}{profiles}")).unwrap();
+        let target = root.join("target");
+        let flags = super::super::flags_of(root, &target);
+        let mut cargo = Command::new(program::cargo_path());
+        cargo.args(["build", "--quiet", "--offline", "--profile", super::super::PROFILE]).current_dir(root);
+        cargo.env("RUSTFLAGS", flags).env("CARGO_TARGET_DIR", &target).env("CARGO_INCREMENTAL", "0");
+        assert!(cargo.stdin(Stdio::null()).status().unwrap().success());
+        target.join(super::super::PROFILE).join("small")
+    }
+
+    #[test]
+    fn a_program_has_the_same_bytes_at_every_path() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a", "a-clone/at/another/path"].map(|name| small_program(&folder.path().join(name)));
+        assert_eq!(sha256(&a).unwrap(), sha256(&b).unwrap());
+    }
+}

@@ -78,11 +78,11 @@ goals reached or contacts. trundle's runs use its own simulator, with the benchm
         text: "A planner enters [the corridor benchmark](corridor-benchmark.md#other-programs) as a program that reads a problem on standard
 input and writes its motions on standard output. One command runs and evaluates it:
 
-```sh
-cargo run --release -p trundle-docking --example corridor_bench -- --problems 5000 --planner ./my_planner
+```sh tested in=clone
+cargo run --release -p trundle-docking --example corridor_bench -- --problems 50 --planner bench/docking/entry_example.py
 ```
 
-`bench/docking/entry_example.py` is an example of 20 lines.",
+That entry is an example of 20 lines. `--problems 5000` are the problems of the figures above.",
         pictures: &[],
         measurements: &[],
         table: figures,

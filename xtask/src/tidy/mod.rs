@@ -14,6 +14,7 @@ mod constants;
 mod finding;
 mod glossary;
 mod leftovers;
+mod libraries_page;
 mod lockfile;
 mod manifest;
 mod markdown;
@@ -23,6 +24,7 @@ mod prose;
 mod purity;
 mod results_page;
 mod shape;
+mod shell_blocks;
 mod source;
 mod tree;
 mod type_names;
@@ -79,7 +81,9 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
         glossary::check,
         purity::check,
         shape::check,
+        shell_blocks::check,
         leftovers::check,
+        libraries_page::check,
         lockfile::check,
         manifest::check,
         markdown::check,
