@@ -54,8 +54,8 @@ impl KobukiBase {
         sink: EventSink,
     ) -> Result<Self, StartError> {
         let config = config.validated()?;
-        let port = connector.port();
         let mut link = connector.connect()?;
+        let port = connector.port();
         let (decoder, versions) = probe(&mut *link, &port, &config, &clock)?;
         let status = Arc::new(Mutex::new(Status { versions, ..Status::default() }));
         let (commands, command_queue) = channel();
