@@ -14,6 +14,11 @@ for wheel in pyrealsense2==2.59.1.11053 pyorbbecsdk2==2.1.2; do
         { echo "get-native-libraries: no wheel $wheel for $(python3 --version)" >&2; missing=1; }
 done
 
+# An older librealsense, which records .bag; the newer one records .db3 and plays both.
+wheel=pyrealsense2==2.55.1.6486
+python3 -m pip install --quiet --no-deps --upgrade --target "$folder/python-bag" "$wheel" ||
+    { echo "get-native-libraries: no wheel $wheel for $(python3 --version)" >&2; missing=1; }
+
 cd "$folder/packages" || exit 1
 for package in libusb-1.0-0 libfreenect0.5 libopenni2-0 libjpeg62-turbo; do
     apt-get download "$package" ||

@@ -24,7 +24,7 @@ const KERNELS: [(&str, &[&str]); 5] = [
     ("trundle-vision", &["orb", "alignment::template", "vocabulary::hamming", "matching"]),
     ("trundle-mapping", &["depth_scan::pixel_row", "scan_match"]),
     ("trundle-grid", &["tiles"]),
-    ("trundle-optim", &["bundle_system", "block_cholesky"]),
+    ("trundle-optim", &["arrow", "bundle_system", "block_cholesky"]),
     ("trundle-sim", &["world", "camera::band"]),
 ];
 

@@ -1,13 +1,11 @@
 //! A base as a user names it.
 
 use crate::kobuki::{Connector, SerialConnector};
-use crate::serial_devices::{SerialDevice, serial_devices};
+use crate::kobuki_finder::KobukiFinder;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Port of a Kobuki on a system with the udev rule [`KOBUKI_UDEV_RULE`].
-pub const KOBUKI_UDEV_PORT: &str = "/dev/kobuki";
 /// Udev rule that names a Kobuki's port and gives access to the group `dialout`. The FTDI chip of a Kobuki has a serial number that begins
 /// with `kobuki`. Source: measured by many users; the chip is an FT232 (0403:6001).
 pub const KOBUKI_UDEV_RULE: &str = "SUBSYSTEM==\"tty\", ATTRS{idVendor}==\"0403\", ATTRS{idProduct}==\"6001\", \
@@ -17,7 +15,7 @@ pub const KOBUKI_UDEV_RULE: &str = "SUBSYSTEM==\"tty\", ATTRS{idVendor}==\"0403\
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BaseSpec {
-    /// A Kobuki at a serial port; `None`: the port if one is found.
+    /// A Kobuki at a serial port; `None`: the port at which one is found, at each attempt to connect.
     Kobuki(Option<PathBuf>),
 }
 
@@ -27,19 +25,11 @@ impl BaseSpec {
     #[must_use]
     pub fn connector(&self, program: &Path) -> Box<dyn Connector> {
         let Self::Kobuki(port) = self;
-        Box::new(SerialConnector::new(port.clone().unwrap_or_else(kobuki_port)).guarded_by(program))
+        match port {
+            Some(port) => Box::new(SerialConnector::new(port).guarded_by(program)),
+            None => Box::new(KobukiFinder::new(program)),
+        }
     }
-}
-
-/// The port at which a Kobuki is found, or the name that the udev rule would give it.
-#[must_use]
-pub fn kobuki_port() -> PathBuf {
-    let named = Path::new(KOBUKI_UDEV_PORT);
-    if named.exists() { named.to_owned() } else { listed_kobuki().unwrap_or_else(|| named.to_owned()) }
-}
-
-fn listed_kobuki() -> Option<PathBuf> {
-    serial_devices().into_iter().find(SerialDevice::is_kobuki).map(|device| device.path)
 }
 
 impl FromStr for BaseSpec {

@@ -22,8 +22,10 @@ pub mod camera;
 mod camera_spec;
 pub mod clock;
 pub mod kobuki;
+mod kobuki_finder;
 mod serial_devices;
 
-pub use base_spec::{BaseSpec, KOBUKI_UDEV_PORT, KOBUKI_UDEV_RULE, kobuki_port};
+pub use base_spec::{BaseSpec, KOBUKI_UDEV_RULE};
 pub use camera_spec::{CameraSpec, SERVE_COMMAND};
+pub use kobuki_finder::KOBUKI_UDEV_PORT;
 pub use serial_devices::{PortAccess, SerialDevice, serial_devices};

@@ -28,6 +28,7 @@ fn port(device: &SerialDevice) -> Check {
     let (topic, name) = ("base", device.path.display());
     match device.access {
         PortAccess::Free => Check::ok(topic, format!("{name} {} can be opened", device.id)),
+        PortAccess::Permitted => Check::ok(topic, format!("{name} {} may be opened", device.id)),
         PortAccess::Busy => Check::warning(
             topic,
             format!("{name} is in use by another program"),

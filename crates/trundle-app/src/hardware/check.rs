@@ -126,8 +126,8 @@ impl HardwareReport {
         }
         let gyro_rate = rate_and_gap(&log.gyro).map(|(rate, _)| rate);
         if let Some(rate) = gyro_rate {
-            let bias = mean(&log.rest_rates).to_degrees();
-            self.row("gyro: rate, bias at rest", format!("{rate:.1} Hz, {bias:.3} deg/s"));
+            let bias = self.gyro_bias(&log.rest_rates);
+            self.row("gyro: rate, bias at rest", format!("{rate:.1} Hz, {bias}"));
         }
         if gyro_rate.is_none_or(|rate| rate < MIN_GYRO_HZ) {
             let rate = gyro_rate.map_or("do not come".to_owned(), |rate| format!("come at {rate:.1} Hz"));
@@ -143,6 +143,17 @@ impl HardwareReport {
             let charge = battery.charge.map_or(String::new(), |charge| format!(", {:.0} %", charge * 100.0));
             self.row("battery", format!("{:.1} V{charge}", battery.voltage_v));
         }
+    }
+
+    /// The bias of the gyro in words, from its rates \[rad/s\] before the wheels first turned.
+    fn gyro_bias(&mut self, rest_rates: &[f64]) -> String {
+        if rest_rates.is_empty() {
+            let how = "leave the robot at rest for the first 3 s of the check";
+            self.notes
+                .push(format!("bias of the gyro not measured, the wheels turned from the beginning: {how}"));
+            return "not measured".to_owned();
+        }
+        format!("{:.3} deg/s", mean(rest_rates).to_degrees())
     }
 
     fn check_camera(&mut self, log: &CameraLog, nominal_hz: f64) {
@@ -181,20 +192,7 @@ impl HardwareReport {
             let how = "push the robot straight ahead by 0.5 m during the check";
             return self.notes.push(format!("signs of the encoders not checked: {how}"));
         }
-        let is_turn = gyro.abs() > MIN_TURN_RAD;
-        let problem = match (left > 0.0, right > 0.0) {
-            (false, false) if !is_turn => {
-                Some("both encoders count down: reverse both, or the robot was pulled back")
-            }
-            (true, false) | (false, true) if !is_turn => {
-                Some("the encoders count in opposite directions on a straight push: reverse one of them")
-            }
-            _ if is_turn && turn * gyro < 0.0 => {
-                Some("wheels and gyro turn in opposite directions: swap the encoders or reverse the gyro")
-            }
-            _ => None,
-        };
-        match problem {
+        match encoder_fault((left, right), turn, gyro) {
             Some(problem) => self.problems.push(problem.to_owned()),
             None => self.row("signs of encoders and gyro", "right".to_owned()),
         }
@@ -210,6 +208,24 @@ impl HardwareReport {
                 .push(format!("camera's height and tilt not measured, no floor in sight: {how}"));
         };
         self.values.values.extend(floor_values(&floor, &robot.mount));
+    }
+}
+
+/// The fault that a push or a turn shows, with its remedy: distances of the wheels (left, right) \[m\], turn by wheels and by gyro \[rad\].
+fn encoder_fault((left, right): (f64, f64), turn: f64, gyro: f64) -> Option<&'static str> {
+    if gyro.abs() > MIN_TURN_RAD {
+        return (turn * gyro < 0.0).then_some(
+            "wheels and gyro turn in opposite directions: swap the plugs of the left and the right encoder, or mend the mount of the gyro",
+        );
+    }
+    match (left > 0.0, right > 0.0) {
+        (true, true) => None,
+        (false, false) => Some(
+            "both encoders count down: push the robot ahead, or rewire both encoders, which no setting reverses",
+        ),
+        _ => Some(
+            "the encoders count in opposite directions on a straight push: rewire the one that counts down, which no setting reverses",
+        ),
     }
 }
 
@@ -236,3 +252,6 @@ fn median(values: &[f64]) -> f64 {
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests;

@@ -81,8 +81,13 @@ impl CheckLog {
         }
     }
 
+    /// Records an event that arrives now.
     pub fn on_event(&self, event: &SensorEvent) {
-        let now = self.origin.elapsed().as_secs_f64();
+        self.on_event_at(self.origin.elapsed().as_secs_f64(), event);
+    }
+
+    /// Records an event that arrives at `now` \[s\] after the origin.
+    pub fn on_event_at(&self, now: f64, event: &SensorEvent) {
         match event {
             SensorEvent::Rgbd(image) => self.camera().on_image(now, image),
             event => self.base().on_event(now, event),

@@ -97,6 +97,7 @@ fn camera_rows(kind: NativeKind, report: &LibraryReport) -> Vec<Vec<String>> {
 fn serial_row(device: &SerialDevice) -> Vec<String> {
     let access = match device.access {
         PortAccess::Free => "can be opened",
+        PortAccess::Permitted => "not opened, the right is there",
         PortAccess::Busy => "in use by another program",
         PortAccess::NoRights => "no right to open it: sudo usermod -aG dialout $USER, then log in again",
         PortAccess::Broken => "does not answer: plug it in again",

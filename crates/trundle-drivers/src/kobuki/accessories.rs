@@ -17,7 +17,7 @@ impl Accessories {
         self.send(KobukiCommand::Outputs(outputs));
     }
 
-    /// Plays a melody of the firmware. A melody is dropped while the link is down.
+    /// Plays a melody of the firmware. While the link is down the newest melody waits for its return.
     pub fn play(&self, sequence: SoundSequence) {
         self.send(KobukiCommand::SoundSequence(sequence));
     }

@@ -54,8 +54,8 @@ impl KobukiBase {
         sink: EventSink,
     ) -> Result<Self, StartError> {
         let config = config.validated()?;
-        let port = connector.port();
         let mut link = connector.connect()?;
+        let port = connector.port();
         let (decoder, versions) = probe(&mut *link, &port, &config, &clock)?;
         let status = Arc::new(Mutex::new(Status { versions, ..Status::default() }));
         let (commands, command_queue) = channel();
@@ -91,7 +91,7 @@ impl KobukiBase {
         self.accessories.set_outputs(outputs);
     }
 
-    /// Plays a melody of the firmware.
+    /// Plays a melody of the firmware. While the link is down the newest melody waits for its return.
     pub fn play(&self, sequence: SoundSequence) {
         self.accessories.play(sequence);
     }
@@ -101,7 +101,7 @@ impl KobukiBase {
         self.accessories.send(KobukiCommand::note(frequency_hz, duration_ms));
     }
 
-    /// Sets the gains of the wheels' speed controllers. Firmware 1.2.0 or later.
+    /// Sets the gains of the wheels' speed controllers. Firmware 1.2.0 or later. They are set again after the return of a lost link.
     ///
     /// # Errors
     /// When a gain is below zero or above 4294967.

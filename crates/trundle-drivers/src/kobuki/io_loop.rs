@@ -1,7 +1,7 @@
 //! The thread that owns the link to a base: it reads, writes, and opens the port again after a loss.
 //!
 //! The port is closed when the link counts as lost, which discards bytes from before the loss. The first bytes of a new connection are zero
-//! speed. Commands that come while the link is down are dropped.
+//! speed. Speeds that come while the link is down are dropped; of lights, sounds and gains the newest are sent after its return.
 //!
 //! Two bases on one port are a lost link until a window of packets is that of one base. A base other than the run's is a lost link until
 //! the run's base answers.
@@ -12,11 +12,12 @@ use super::base_status::{Status, locked};
 use super::command_schedule::CommandSchedule;
 use super::decoder::FeedbackDecoder;
 use super::feedback_events::FeedbackEvents;
+use super::kept_accessories::KeptAccessories;
 use super::link::{ByteLink, Connector};
 use super::link_state::{LinkState, Loss, LostLink};
 use super::outbox::Outbox;
 use super::probe::greeting;
-use super::protocol::{BaseControl, Feedback, KobukiCommand, Outputs};
+use super::protocol::{BaseControl, Feedback, KobukiCommand};
 use super::stream_check::{StreamCheck, StreamFault};
 use crate::clock::HostClock;
 use std::sync::mpsc::{Receiver, SyncSender};
@@ -57,8 +58,7 @@ pub(super) struct IoLoop {
     check: StreamCheck,
     identity: BaseIdentity,
     outbox: Outbox,
-    /// Last requested outputs. The base loses its outputs when it is switched off.
-    outputs: Option<Outputs>,
+    accessories: KeptAccessories,
     /// Stamp of the newest packet \[ms\], of this connection or the previous one.
     last_ms: Option<u16>,
 }
@@ -85,7 +85,7 @@ impl IoLoop {
             check: StreamCheck::default(),
             identity,
             outbox: Outbox::default(),
-            outputs: None,
+            accessories: KeptAccessories::default(),
             last_ms: None,
         }
     }
@@ -121,7 +121,7 @@ impl IoLoop {
         self.take_speeds(now);
         self.queue_speed(now);
         if self.state.is_up && !was_up {
-            self.restore_outputs();
+            self.restore_accessories();
         }
         self.take_accessories();
         if self.identity.is_request_due(now) {
@@ -181,7 +181,7 @@ impl IoLoop {
         Ok(())
     }
 
-    /// The first packet of a connection: commands from before are dropped. Zero speed is sent since the port is open.
+    /// The first packet of a connection: speeds from before are dropped. Zero speed is sent since the port is open.
     fn link_up(&mut self, now: Stamp) {
         self.take_speeds(now);
         self.take_accessories();
@@ -190,10 +190,8 @@ impl IoLoop {
         tracing::info!("port {}: the base answers", self.connector.port());
     }
 
-    fn restore_outputs(&mut self) {
-        if let Some(outputs) = self.outputs {
-            self.outbox.push(&KobukiCommand::Outputs(outputs).encode());
-        }
+    fn restore_accessories(&mut self) {
+        self.accessories.on_return().for_each(|command| self.outbox.push(&command.encode()));
     }
 
     fn take_speeds(&mut self, now: Stamp) {
@@ -211,13 +209,11 @@ impl IoLoop {
     fn take_accessories(&mut self) {
         let mut dropped = 0;
         for command in self.queues.accessories.try_iter().take(MAX_COMMANDS_AT_ONCE) {
-            if let KobukiCommand::Outputs(outputs) = command {
-                self.outputs = Some(outputs);
-            }
             if self.state.is_up {
+                self.accessories.note_sent(command);
                 self.outbox.push(&command.encode());
             } else {
-                dropped += 1;
+                dropped += u64::from(self.accessories.note_unsent(command));
             }
         }
         self.count_dropped(dropped);

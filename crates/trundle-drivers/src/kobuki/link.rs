@@ -28,7 +28,7 @@ pub trait Connector: Send {
     /// When the port is missing, busy, not permitted, or not a serial port.
     fn connect(&mut self) -> Result<Box<dyn ByteLink>, ConnectError>;
 
-    /// The name of the port, for messages.
+    /// The name of the port of the latest attempt, for messages.
     fn port(&self) -> String;
 }
 

@@ -6,6 +6,7 @@
 //! | [`decoder`] | packets out of a damaged stream of bytes |
 //! | [`feedback_events`] | sensor events out of packets |
 //! | [`accessories`] | lights, sounds and outputs of a running base |
+//! | `kept_accessories` | those of its commands that outlast a lost link |
 //! | [`base`], [`base_config`], [`base_status`], [`start_error`] | the driver: threads, settings, counters, errors of the start |
 //! | [`base_guard`] | a process that stops the base if this process dies (Unix) |
 //! | [`stream_check`] | signs of two users of one port |
@@ -27,6 +28,7 @@ pub mod decoder;
 pub mod emulator;
 pub mod feedback_events;
 mod io_loop;
+mod kept_accessories;
 pub mod link;
 mod link_state;
 mod outbox;

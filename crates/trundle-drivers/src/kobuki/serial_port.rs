@@ -70,9 +70,7 @@ impl SerialPort {
     /// # Errors
     /// When the port is missing, busy, not permitted, or not a serial port.
     pub fn open(path: &Path) -> Result<Self, ConnectError> {
-        let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
-        let fd = open(path, flags, Mode::empty()).map_err(|errno| connect_error(path, errno))?;
-        let port = Self { fd, guard: None };
+        let port = Self { fd: open_unblocked(path)?, guard: None };
         port.lock().and_then(|()| port.set_line()).map_err(|errno| connect_error(path, errno))?;
         Ok(port)
     }
@@ -127,6 +125,12 @@ impl ByteLink for SerialPort {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         or_none(rustix::io::write(&self.fd, bytes))
     }
+}
+
+/// Opens a port without a wait for its carrier, and not as the terminal of this program.
+pub(crate) fn open_unblocked(path: &Path) -> Result<OwnedFd, ConnectError> {
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    open(path, flags, Mode::empty()).map_err(|errno| connect_error(path, errno))
 }
 
 /// Waits until `fd` can be read, at most `wait`; returns the event.

@@ -4,7 +4,9 @@ use crate::device::{Device, Sends};
 use crate::rig::{Rig, clock, is_near, patient, wait_for};
 use std::sync::mpsc;
 use trundle_core::{SensorEvent, Twist2};
-use trundle_drivers::kobuki::protocol::{Led, Outputs, UniqueId, Version};
+use trundle_drivers::kobuki::protocol::{
+    Gains, KobukiCommand, Led, Outputs, SoundSequence, UniqueId, Version,
+};
 use trundle_drivers::kobuki::{EmulatedKobuki, KobukiBase, SerialConnector};
 
 #[test]
@@ -15,12 +17,17 @@ fn after_an_unplugged_cable_the_first_speed_is_zero() {
     let rig = Rig::with("unplug", Sends::Packets, config);
     let fast = Twist2::new(0.3, 0.0);
     let outputs = Outputs { led2: Led { red: true, green: false }, ..Outputs::default() };
+    let gains = Gains { is_user: true, p: 90.0, i: 0.2, d: 1.5 };
     rig.base.set_outputs(outputs);
+    rig.base.set_gains(gains).unwrap();
     rig.drive(fast);
     rig.base.commands().send(fast).unwrap();
     rig.device.state().is_plugged = false;
     wait_for("the loss", || rig.links() == [true, false]);
     (0..10).for_each(|_| rig.base.commands().send(fast).unwrap());
+    rig.base.play(SoundSequence::Error);
+    rig.base.play(SoundSequence::CleaningEnd);
+    rig.base.request_gains();
     wait_for("an attempt to open the port", || rig.base.counters().reconnects > 0);
     {
         let mut state = rig.device.state();
@@ -30,13 +37,20 @@ fn after_an_unplugged_cable_the_first_speed_is_zero() {
     }
     wait_for("the link", || rig.links() == [true, false, true]);
     wait_for("the outputs", || rig.device.state().base.outputs() == outputs);
+    wait_for("the gains", || rig.base.gains() == Some(gains));
+    let melody = KobukiCommand::SoundSequence(SoundSequence::CleaningEnd);
+    let mut sounds = Vec::new();
+    wait_for("the last melody of the absence", || {
+        sounds.extend(rig.device.state().base.take_sounds());
+        sounds == [melody]
+    });
     wait_for("speeds", || rig.device.state().twists.len() > 5);
     let twists = rig.device.state().twists.clone();
     assert!(twists.iter().all(|twist| *twist == Twist2::ZERO), "{twists:?}");
     rig.drive(Twist2::new(0.1, 0.0));
     assert!(!rig.device.state().twists.iter().any(|twist| is_near(*twist, fast)), "an old command was sent");
     let counters = rig.base.counters();
-    assert!(counters.link_losses == 1 && counters.commands_dropped >= 10, "{counters:?}");
+    assert!(counters.link_losses == 1 && counters.commands_dropped >= 11, "{counters:?}");
     assert!(rig.events().is_sorted_by_key(SensorEvent::stamp), "stamps run backwards");
 }
 

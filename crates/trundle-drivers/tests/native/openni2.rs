@@ -18,7 +18,8 @@ pub fn library() -> Option<PathBuf> {
     Some(list(&[libusb()?, debian("libjpeg.so.62")?, debian("libOpenNI2.so.0")?]))
 }
 
-fn settings(library: PathBuf) -> OpenNiSettings {
+/// Settings with the fields of view that the dummy device does not report.
+pub fn settings(library: PathBuf) -> OpenNiSettings {
     let camera = PinholeCamera::from_field_of_view((320, 240), (1.0, 0.8)).unwrap();
     let calibration = RgbdCalibration { color: camera, depth: camera, color_from_depth: None };
     let mut settings = OpenNiSettings::default();
@@ -27,7 +28,8 @@ fn settings(library: PathBuf) -> OpenNiSettings {
     settings
 }
 
-fn check(frame: &CameraFrame) {
+/// Checks a pair of the dummy device.
+pub fn check(frame: &CameraFrame) {
     assert_eq!((frame.color.format, frame.color.bytes.len()), (PixelFormat::Rgb8, 320 * 240 * 3));
     assert_eq!((frame.depth.format, frame.depth.bytes.len()), (PixelFormat::Depth16, 320 * 240 * 2));
     assert!((frame.color.device_stamp - frame.depth.device_stamp).abs() <= 0.017);
@@ -89,5 +91,10 @@ fn without_a_camera_the_error_says_so() {
     let open = |selection| OpenNiCamera::open(&api, &selection, &OpenNiSettings::default()).unwrap_err();
     assert!(matches!(open(Selection::First), CameraError::NoDevice { .. }));
     assert!(matches!(open(Selection::Serial("1d27/0601@1/9".into())), CameraError::NoDevice { .. }));
-    assert!(matches!(open(Selection::File("x.oni".into())), CameraError::StreamsUnavailable { .. }));
+    assert!(matches!(open(Selection::File("/nowhere.oni".into())), CameraError::Io { .. }));
+    let folder = tempfile::tempdir().unwrap();
+    let broken = folder.path().join("broken.oni");
+    std::fs::write(&broken, b"no recording").unwrap();
+    let error = open(Selection::File(broken));
+    assert!(matches!(error, CameraError::LibraryFailed { .. } | CameraError::NoDevice { .. }), "{error}");
 }

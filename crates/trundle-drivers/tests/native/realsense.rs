@@ -34,12 +34,13 @@ fn library() -> Option<PathBuf> {
     Some(files)
 }
 
-fn record(file: &Path) {
+/// Records into `file` by the wheel in the folder `wheel`.
+fn record(file: &Path, wheel: &Path) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/native/realsense_recording.py");
     let usb = libusb().unwrap();
     let output = Command::new("python3")
         .arg(script)
-        .arg(folder().join("python"))
+        .arg(wheel)
         .arg(file)
         .env("LD_LIBRARY_PATH", usb.parent().unwrap())
         .output()
@@ -51,7 +52,7 @@ fn record(file: &Path) {
 fn recorded() -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("software.db3");
-    record(&file);
+    record(&file, &self::folder().join("python"));
     (folder, file)
 }
 
@@ -71,10 +72,28 @@ fn a_recording_comes_back_whole() {
         return skip("realsense::a_recording_comes_back_whole", "the wheel pyrealsense2 or its libpython");
     };
     let (_folder, file) = recorded();
-    let api = RealSenseApi::load(Some(&library)).unwrap();
+    check_recording(&library, file);
+}
+
+#[test]
+fn a_bag_of_an_older_librealsense_comes_back_whole() {
+    let wheel = folder().join("python-bag");
+    let (Some(library), true) = (library(), wheel.join("pyrealsense2").exists()) else {
+        return skip("realsense::a_bag_of_an_older_librealsense", "a wheel pyrealsense2 or its libpython");
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("software.bag");
+    record(&file, &wheel);
+    assert!(std::fs::read(&file).unwrap().starts_with(b"#ROSBAG V2.0"));
+    check_recording(&library, file);
+}
+
+/// Every frame of the recording is played, with the camera's description.
+fn check_recording(library: &Path, file: PathBuf) {
+    let api = RealSenseApi::load(Some(library)).unwrap();
     let settings = RealSenseSettings::default();
     let mut camera = RealSenseCamera::open(&api, &Selection::File(file), &settings).unwrap();
-    check_info(&camera, &library);
+    check_info(&camera, library);
     let frames = all_frames(&mut camera);
     let stamps: Vec<_> = frames.iter().map(|frame| frame.depth.device_stamp.to_string()).collect();
     assert_eq!(frames.len(), FRAMES, "{stamps:?}");

@@ -1,5 +1,5 @@
 # Records a software device with librealsense, for the test of the RealSense camera.
-# Usage: python3 realsense_recording.py SITE_PACKAGES FILE.db3
+# Usage: python3 realsense_recording.py SITE_PACKAGES FILE. FILE ends with .db3 for librealsense 2.59, with .bag for 2.55.
 # Depth: 64 x 48, value 100 n + 1, first pixel 7, for n = 0 to 4. Colour: 80 x 60, value n + 1, first pixel (9, 8, 7).
 # Gyro: samples m = 0 to 19 of (0.1, 0.2, 0.3 + m) rad/s, four an image, at 999 + 8 m ms.
 # Stamps of the images: 1000 + 33.25 n ms; the colour image 0.5 ms later.

@@ -6,6 +6,11 @@ use crate::camera::{CameraFrame, RawImage};
 /// period with 2 % for the jitter of the clocks.
 const MAX_PAIR_GAP_PERIODS: f64 = 0.51;
 
+/// Largest time between the images of a pair \[s\]; `rate_hz` is the rate of the slower stream \[Hz\], above 0.
+pub(in crate::camera) fn max_gap_s(rate_hz: f64) -> f64 {
+    MAX_PAIR_GAP_PERIODS / rate_hz
+}
+
 /// The newest image of each kind.
 #[derive(Debug)]
 pub(in crate::camera) struct ImagePair {
@@ -19,7 +24,7 @@ pub(in crate::camera) struct ImagePair {
 impl ImagePair {
     /// No images; `rate_hz` is the rate of the slower stream \[Hz\], above 0.
     pub(in crate::camera) fn new(rate_hz: f64) -> Self {
-        Self { max_gap_s: MAX_PAIR_GAP_PERIODS / rate_hz, color: None, depth: None }
+        Self { max_gap_s: max_gap_s(rate_hz), color: None, depth: None }
     }
 
     /// A pair of images of the same time; the older one of two that do not fit is dropped.

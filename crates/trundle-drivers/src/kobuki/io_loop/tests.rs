@@ -3,6 +3,7 @@
 use super::*;
 use crate::kobuki::emulator::{EmulatedKobuki, KobukiState};
 use crate::kobuki::link::ConnectError;
+use crate::kobuki::protocol::Outputs;
 use std::io;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::mpsc::{Sender, channel, sync_channel};

@@ -1,11 +1,13 @@
 //! A camera of OpenNI2.
 
 use super::functions::OpenNiApi;
+use super::playback::Playback;
 use super::session::{Kind, OpenDevice, depth_unit_m, list_devices, pixel_format};
 use crate::camera::native::freenect::calibration::depth_camera_pose;
 use crate::camera::native::image_pair::ImagePair;
 use crate::camera::native::{RgbdCalibration, Selection};
-use crate::camera::{CameraError, CameraFrame, CameraInfo, DepthCamera, StreamInfo};
+use crate::camera::{CameraError, CameraFrame, CameraInfo, DepthCamera, RawImage, StreamInfo};
+use std::ffi::c_int;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -34,20 +36,29 @@ impl Default for OpenNiSettings {
     }
 }
 
-/// A camera of OpenNI2.
+/// A camera of OpenNI2, or a recording of one.
 #[derive(Debug)]
 pub struct OpenNiCamera {
     info: CameraInfo,
     device: OpenDevice,
-    pair: ImagePair,
+    images: Images,
+}
+
+/// Images that wait for their pair.
+#[derive(Debug)]
+enum Images {
+    Live(ImagePair),
+    Recorded(Playback),
 }
 
 impl OpenNiCamera {
     /// Opens a camera and starts its streams in their default modes, with depth registered to colour if the camera offers it. The serial
-    /// number of `selection` is the URI of [`list_devices`]; `Dummy` is the driver's own test image.
+    /// number of `selection` is the URI of [`list_devices`]; `Dummy` is the driver's own test image. A recording plays as fast as it is read;
+    /// its depth counts as not registered, as a camera delivers it by default.
     ///
     /// # Errors
-    /// When the camera is missing or in use, it reports no field of view and the settings give no calibration, or it is a recording.
+    /// When the camera is missing or in use, it reports no field of view and the settings give no calibration, or it is a recording without
+    /// the cropping of its streams.
     pub fn open(
         api: &Arc<OpenNiApi>,
         selection: &Selection,
@@ -55,14 +66,40 @@ impl OpenNiCamera {
     ) -> Result<Self, CameraError> {
         let uri = uri(api, selection)?;
         let device = OpenDevice::open(api, &uri)?;
-        if device.is_recording() {
-            return Err(no_recording(&uri));
+        let is_recording = device.is_recording();
+        if is_recording && !device.has_cropping() {
+            return Err(without_cropping(&uri));
         }
         let is_registered = device.register_depth();
-        let info = info(&device, settings, is_registered)?;
+        let info = CameraInfo { is_live: !is_recording, ..info(&device, settings, is_registered)? };
+        let rate_hz = info.color.rate_hz.min(info.depth.rate_hz);
+        let images = if is_recording {
+            device.play_once()?;
+            Images::Recorded(Playback::new(
+                [Kind::Color, Kind::Depth].map(|kind| device.frame_count(kind)),
+                rate_hz,
+            ))
+        } else {
+            Images::Live(ImagePair::new(rate_hz))
+        };
         device.start()?;
-        let pair = ImagePair::new(info.color.rate_hz.min(info.depth.rate_hz));
-        Ok(Self { info, device, pair })
+        Ok(Self { info, device, images })
+    }
+}
+
+impl Images {
+    /// Adds an image with its number in the stream; returns the pair that it completes.
+    fn add(&mut self, kind: Kind, image: RawImage, number: c_int) -> Option<CameraFrame> {
+        match self {
+            Self::Recorded(playback) => playback.add(kind, image, number),
+            Self::Live(pair) => {
+                match kind {
+                    Kind::Color => pair.color = Some(image),
+                    Kind::Depth => pair.depth = Some(image),
+                }
+                pair.take()
+            }
+        }
     }
 }
 
@@ -75,15 +112,23 @@ impl DepthCamera for OpenNiCamera {
         let start = Instant::now();
         loop {
             let left = timeout.saturating_sub(start.elapsed());
-            match self.device.next_image(left)? {
-                Some((Kind::Color, image)) => self.pair.color = Some(image),
-                Some((Kind::Depth, image)) => self.pair.depth = Some(image),
-                None => return Ok(None),
-            }
-            if let Some(frame) = self.pair.take() {
+            let Some((kind, image, number)) = self.device.next_image(left)? else {
+                if let Images::Recorded(playback) = &mut self.images {
+                    playback.on_silence(Instant::now());
+                }
+                return Ok(None);
+            };
+            if let Some(frame) = self.images.add(kind, image, number) {
                 return Ok(Some(frame));
             }
+            if self.has_ended() {
+                return Ok(None);
+            }
         }
+    }
+
+    fn has_ended(&self) -> bool {
+        matches!(&self.images, Images::Recorded(playback) if playback.has_ended())
     }
 }
 
@@ -94,15 +139,22 @@ fn uri(api: &Arc<OpenNiApi>, selection: &Selection) -> Result<String, CameraErro
             let first = list_devices(api)?.into_iter().next();
             first.map(|device| device.serial).ok_or_else(|| CameraError::NoDevice { kind: KIND.into() })
         }
-        Selection::File(file) => Err(no_recording(&file.display().to_string())),
+        Selection::File(file) => match file.to_str() {
+            Some(path) if file.is_file() => Ok(path.to_owned()),
+            _ => Err(CameraError::Io {
+                place: file.display().to_string(),
+                source: std::io::ErrorKind::NotFound.into(),
+            }),
+        },
     }
 }
 
-fn no_recording(file: &str) -> CameraError {
+fn without_cropping(file: &str) -> CameraError {
     CameraError::StreamsUnavailable {
-        device: KIND.into(),
-        wanted: format!("the recording {file}"),
-        remedy: "convert it to a camera stream, or name a camera as `trundle devices` lists it".into(),
+        device: format!("{KIND} {file}"),
+        wanted: "the cropping of both streams, without which the library plays no image of a recording"
+            .into(),
+        remedy: "record a camera that has this property, as the Xtion and the Kinect v1 do".into(),
     }
 }
 

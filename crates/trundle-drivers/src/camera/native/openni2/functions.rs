@@ -81,7 +81,7 @@ pub struct Frame {
     pub(super) data: *const c_void,
     sensor: c_int,
     pub(super) micros: u64,
-    index: c_int,
+    pub(super) index: c_int,
     pub(super) width: c_int,
     pub(super) height: c_int,
     pub(super) mode: VideoMode,

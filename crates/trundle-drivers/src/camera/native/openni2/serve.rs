@@ -11,7 +11,7 @@ use std::time::Duration;
 /// Longest wait for a frame before the next try. Source: ours.
 const FRAME_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Opens a camera and hands each frame to the function that `start` returns, until that function fails.
+/// Opens a camera or a recording and hands each frame to the function that `start` returns, until that function fails or the recording ends.
 ///
 /// With a stream writer: `serve_openni(&selection, &settings, |info| { let mut writer = StreamWriter::new(out, info)?;
 /// Ok(move |frame: CameraFrame| writer.write(&frame)) })`.
@@ -29,7 +29,7 @@ where
     let api = OpenNiApi::load(settings.library.as_deref())?;
     let mut camera = OpenNiCamera::open(&api, selection, settings)?;
     let mut send = start(camera.info())?;
-    loop {
+    while !camera.has_ended() {
         match camera.next_frame(FRAME_TIMEOUT) {
             Ok(Some(frame)) => send(frame)?,
             Ok(None) => {}
@@ -37,4 +37,5 @@ where
             Err(error) => return Err(error),
         }
     }
+    Ok(())
 }

@@ -15,10 +15,16 @@ const SENSOR_DEPTH: c_int = 3;
 const DEVICE_COMMAND_SEEK: c_int = 1;
 const DEVICE_PROPERTY_REGISTRATION: c_int = 5;
 const REGISTRATION_DEPTH_TO_COLOR: c_int = 1;
+const DEVICE_PROPERTY_PLAYBACK_SPEED: c_int = 100;
+const DEVICE_PROPERTY_PLAYBACK_REPEAT: c_int = 101;
+/// Speed of a recording that plays one image for each that is read. Source: `OpenNI.h`, `PlaybackControl::setSpeed`.
+const SPEED_BY_READER: f32 = -1.0;
+const STREAM_PROPERTY_CROPPING: c_int = 0;
 const STREAM_PROPERTY_HORIZONTAL_FOV: c_int = 1;
 const STREAM_PROPERTY_VERTICAL_FOV: c_int = 2;
 const STREAM_PROPERTY_VIDEO_MODE: c_int = 3;
 const STREAM_PROPERTY_MIRRORING: c_int = 7;
+const STREAM_PROPERTY_FRAME_COUNT: c_int = 8;
 const FORMAT_DEPTH_100_UM: c_int = 101;
 /// Nanoseconds in a microsecond. Source: SI.
 const NANOS_PER_US: i64 = 1000;
@@ -110,6 +116,38 @@ impl OpenDevice {
         unsafe { (self.api.oniDeviceIsCommandSupported)(self.device, DEVICE_COMMAND_SEEK) != 0 }
     }
 
+    /// Makes a recording play each image once, as it is read.
+    pub(super) fn play_once(&self) -> Result<(), CameraError> {
+        let (is_repeated, speed): (c_int, f32) = (0, SPEED_BY_READER);
+        self.set(DEVICE_PROPERTY_PLAYBACK_REPEAT, &is_repeated)?;
+        self.set(DEVICE_PROPERTY_PLAYBACK_SPEED, &speed)
+    }
+
+    fn set<T: Copy>(&self, number: c_int, value: &T) -> Result<(), CameraError> {
+        let value: *const T = value;
+        // SAFETY: the device is valid, and the value has the size of its type.
+        let status = unsafe {
+            (self.api.oniDeviceSetProperty)(self.device, number, value.cast(), size_of_value::<T>())
+        };
+        self.api.check("oniDeviceSetProperty", status, &self.name)
+    }
+
+    /// Whether a recording has the cropping of each stream: without it the library delivers none of its images.
+    pub(super) fn has_cropping(&self) -> bool {
+        // Flag, column, row, width, height.
+        let mut cropping = [0 as c_int; 5];
+        [Kind::Color, Kind::Depth]
+            .iter()
+            .all(|kind| self.property(*kind, STREAM_PROPERTY_CROPPING, &mut cropping) == STATUS_OK)
+    }
+
+    /// Number of images of a stream of a recording; 0 if it is unknown.
+    pub(super) fn frame_count(&self, kind: Kind) -> c_int {
+        let mut count = 0;
+        self.property(kind, STREAM_PROPERTY_FRAME_COUNT, &mut count);
+        count
+    }
+
     /// Requests depth registered to colour; `false` if the device does not offer it.
     pub(super) fn register_depth(&self) -> bool {
         let mode = REGISTRATION_DEPTH_TO_COLOR;
@@ -170,8 +208,11 @@ impl OpenDevice {
         })
     }
 
-    /// The next image of either stream; `None` if none came within `timeout`.
-    pub(super) fn next_image(&mut self, timeout: Duration) -> Result<Option<(Kind, RawImage)>, CameraError> {
+    /// The next image of either stream, and its number in the stream; `None` if none came within `timeout`.
+    pub(super) fn next_image(
+        &mut self,
+        timeout: Duration,
+    ) -> Result<Option<(Kind, RawImage, c_int)>, CameraError> {
         let ms = c_int::try_from(timeout.as_millis()).unwrap_or(c_int::MAX);
         let mut index = -1;
         // SAFETY: both streams are valid, and the index is writable.
@@ -186,10 +227,10 @@ impl OpenDevice {
         let status = unsafe { (self.api.oniStreamReadFrame)(self.streams[kind as usize], &mut frame) };
         self.api.check("oniStreamReadFrame", status, &self.name)?;
         // SAFETY: the library made the frame; it is valid until its release.
-        let image = unsafe { image(&*frame) };
+        let (image, number) = unsafe { (image(&*frame), (*frame).index) };
         // SAFETY: the frame came from the library and is not used afterwards.
         unsafe { (self.api.oniFrameRelease)(frame) };
-        Ok(Some((kind, image?)))
+        Ok(Some((kind, image?, number)))
     }
 }
 

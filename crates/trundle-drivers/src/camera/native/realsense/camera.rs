@@ -35,8 +35,8 @@ pub struct RealSenseCamera {
 }
 
 impl RealSenseCamera {
-    /// Opens a camera or a recording and starts its streams. A recording is a file `.db3` of librealsense 2.56 or newer, or `.bag` of an
-    /// older version.
+    /// Opens a camera or a recording and starts its streams. A recording is a file `.db3`, as librealsense 2.59 writes it, or `.bag`,
+    /// as 2.55 does.
     ///
     /// # Errors
     /// When the camera is missing, in use, forbidden, too slow or without these streams, or its intrinsics are unusable.
