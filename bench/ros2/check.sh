@@ -1,6 +1,7 @@
 #!/bin/sh
 # What continuous integration runs: the environment, the interface table, each structure against rclpy's serialiser, the robot alone, then
-# trundle driven by strangers. Not run there: latency.py, whose figures a loaded machine spoils, and the longer parts of user.py and faults.py.
+# trundle driven by strangers. Not run there: latency.py, whose figures a loaded
+# machine spoils, unreachable.py, and the longer parts of user.py and faults.py.
 #
 #   check.sh DIR [TRUNDLE]
 #
@@ -9,7 +10,7 @@
 set -u
 
 # Parts of user.py that take 2 minutes together; all of them take 4. `transforms` watches while the others drive.
-user_parts="goal transforms cancel preempt wrong_frame not_finite late_joiner lifecycle_states clear_costmaps save_map load_map"
+user_parts="goal transforms parameters cancel preempt wrong_frame in_a_wall not_finite late_joiner lifecycle_states clear_costmaps save_map load_map"
 
 if [ $# -lt 1 ]; then
     echo "check: the folder is missing; call: check.sh DIR [TRUNDLE]" >&2
@@ -47,6 +48,7 @@ run robot_alone.py
 if [ $# -gt 1 ]; then
     run goals.py --trundle "$2" --worlds flat corridor-a
     run user.py --trundle "$2" --only $user_parts
+    run peer.py --trundle "$2"
     run faults.py --trundle "$2" --only restart_trundle
     run replies.py --trundle "$2"
     run bad_input.py --trundle "$2"

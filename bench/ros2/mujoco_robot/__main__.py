@@ -36,8 +36,11 @@ def parse(arguments):
     parser.add_argument("--lock-step", type=at_least_zero, default=0.0, metavar="S",
                         help="after each odometry wait up to S seconds of wall time for a command stamped with its time or later")
     parser.add_argument("--images", choices=["compressed", "raw", "none"], default="compressed")
+    parser.add_argument("--depth", choices=["16UC1", "32FC1"], default="16UC1", help="raw depth in mm or in m")
     parser.add_argument("--jpeg-quality", type=int, choices=range(1, 101), metavar="1..100", default=90)
     parser.add_argument("--cmd-vel", choices=["stamped", "twist"], default="stamped")
+    parser.add_argument("--odom-start", type=float, nargs=3, default=(0.0, 0.0, 0.0), metavar=("X", "Y", "YAW"),
+                        help="the odometry's first pose, m and rad")
     parser.add_argument("--tf", action="store_true", help="publish odom -> base_link by the wheels")
     parser.add_argument("--no-tf-static", dest="tf_static", action="store_false", help="no base_link -> camera")
     parser.add_argument("--no-noise", dest="noisy", action="store_false")
@@ -54,6 +57,7 @@ def main():
         signal.signal(number, signal.default_int_handler)
     node = rclpy.create_node("mujoco_robot")
     robot = simulation.Simulation(worlds.build(options.world, options.seed), options.seed, options.noisy, options.images != "none")
+    robot.odometry.begin(*options.odom_start)
     print(f"mujoco_robot: world {options.world}, seed {options.seed}, ready", flush=True)
     cpu = time.process_time()
     try:

@@ -117,7 +117,7 @@ class Bridge:
             publisher.publish(messages.camera_info(now))
         if self.options.images == "raw":
             self.color.publish(messages.raw(color, "rgb8", now))
-            self.depth.publish(messages.raw(depth, "16UC1", now))
+            self.depth.publish(messages.raw_depth(depth, self.options.depth, now))
         else:
             self.color.publish(messages.compressed_color(color, now, self.options.jpeg_quality))
             self.depth.publish(messages.compressed_depth(depth, now))

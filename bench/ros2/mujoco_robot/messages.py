@@ -94,6 +94,13 @@ def raw(pixels, encoding, now_ms):
     return message
 
 
+def raw_depth(millimetres, encoding, now_ms):
+    """`16UC1`, or `32FC1` with NaN where there is no reading (REP 118)."""
+    if encoding == "32FC1":
+        millimetres = np.where(millimetres == 0, np.nan, millimetres / 1000).astype(np.float32)
+    return raw(millimetres, encoding, now_ms)
+
+
 def gyro_mount(now_ms):
     """`base_link` to the gyro's frame: the same axes, as in the Kobuki's description."""
     message = TransformStamped(child_frame_id=GYRO_FRAME)

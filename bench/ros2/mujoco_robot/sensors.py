@@ -10,12 +10,16 @@ METRES_PER_TICK = 2 * math.pi * kobuki.WHEEL_RADIUS_M / kobuki.TICKS_PER_TURN
 
 
 class WheelOdometry:
-    """Pose from whole encoder ticks, as the Kobuki's driver computes it: arc by arc, from (0, 0, 0)."""
+    """Pose from whole encoder ticks, as the Kobuki's driver computes it: arc by arc."""
 
     def __init__(self):
         self.x = self.y = self.yaw = 0.0
         self.v = self.omega = 0.0
         self.ticks = None
+
+    def begin(self, x, y, yaw):
+        """Start at a pose; without a call it is (0, 0, 0)."""
+        self.x, self.y, self.yaw = x, y, yaw
 
     def update(self, left_rad, right_rad, elapsed):
         """Angles of the wheels now, rad, and the time since the last update, s."""

@@ -1,4 +1,6 @@
-"""The peer of latency.py: answers each pair of images, and each odometry, with a TwistStamped that carries its stamp."""
+"""The peer of latency.py: answers each pair of images, and each odometry, with a TwistStamped on cmd_vel that carries its stamp.
+
+A pair is answered on pair_echo too."""
 import sys
 
 import rclpy
@@ -25,6 +27,7 @@ def main():
         if key in waiting[other]:
             waiting[other].discard(key)
             answer(pairs, message.header.stamp)
+            answer(commands, message.header.stamp)
         else:
             waiting[kind].add(key)
 

@@ -31,10 +31,10 @@ def options_of(parser):
     return parser
 
 
-def start(options, folder, world, seed):
-    """The robot and trundle; a list to end in reverse."""
+def start(options, folder, world, seed, *robot_options):
+    """The robot and trundle; a list to end in reverse. `robot_options` are further options of the robot."""
     robot = start_robot(folder, "--world", world, "--seed", str(seed), "--real-time-factor", str(options.real_time_factor),
-                        "--lock-step", str(options.lock_step))
+                        "--lock-step", str(options.lock_step), *robot_options)
     return [robot, start_trundle(options, folder)]
 
 

@@ -52,7 +52,7 @@ class Process:
 
 
 def start_robot(folder, *options):
-    """The MuJoCo robot, ready to drive."""
+    """The MuJoCo robot, ready to drive; `options` are its own."""
     robot = Process("robot", [sys.executable, "-m", "mujoco_robot", *options], folder)
     robot.wait_for("ready")
     return robot

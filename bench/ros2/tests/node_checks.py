@@ -80,10 +80,22 @@ def parameter_names(user, node):
 
 
 def in_parts(user, kind, service, names, field):
-    """The answers for all names, asked for a few at a time."""
-    parts = [names[i:i + AT_ONCE] for i in range(0, len(names), AT_ONCE)]
-    answers = [user.call(kind, service, kind.Request(names=part)) for part in parts]
-    return [value for answer in answers if answer for value in getattr(answer, field)]
+    """The answers for all names, asked for a few at a time by one client, and one by one where a reply had no room for them."""
+    client = user.node.create_client(kind, service)
+
+    def ask(part):
+        answer = user.result(client.call_async(kind.Request(names=part)), 30)
+        return list(getattr(answer, field)) if answer else []
+    try:
+        if not user.until(client.service_is_ready, 30):
+            return []
+        found = []
+        for i in range(0, len(names), AT_ONCE):
+            part = names[i:i + AT_ONCE]
+            found += ask(part) or [value for name in part for value in ask([name])]
+        return found
+    finally:
+        user.node.destroy_client(client)
 
 
 def parameters(checks, user, options):

@@ -21,6 +21,9 @@ from node_checks import TransformWatch, lifecycle_states, parameters, transforms
 
 # Codes of an unreachable goal: GOAL_OUTSIDE_MAP, GOAL_OCCUPIED, NO_VALID_PATH of ComputePathToPose.
 UNREACHABLE_CODES = {204, 206, 208}
+# A place inside the wall between living room and kitchen, world frame, and the simulated time within which a goal there ends, s: two seconds of
+# plans, and the robot's stop.
+WALL, WALL_LIMIT_S = (4.5, 0.9, 0.0), 6.0
 # Distance within which FollowPath passes the poses of the path, m.
 PASSED_M = 0.3
 # Distance of the corner of a detour from the direct way, m.
@@ -82,6 +85,17 @@ def wrong_frame(checks, user, options):
     result = sent.wait(30)
     good = not sent.accepted or (status(result) == "ABORTED" and result.result.error_code == 9002)
     checks.check("wrong frame is refused with TF_ERROR", good, outcome(result) if sent.accepted else "rejected")
+
+
+def in_a_wall(checks, user, options):
+    """A goal inside a wall that the camera has seen: aborted with the planner's code within WALL_LIMIT_S, and the reason is in words."""
+    begin = user.now()
+    result = user.go(WALL).wait(120)
+    took = user.now() - begin
+    checks.check("a goal inside a wall aborts with the planner's code", status(result) == "ABORTED" and result.result.error_code in UNREACHABLE_CODES,
+                 outcome(result))
+    checks.check("a goal inside a wall has a message", result is not None and bool(result.result.error_msg))
+    checks.within("simulated time until a goal inside a wall ends", took, WALL_LIMIT_S, "s")
 
 
 def unreachable(checks, user, options):
@@ -238,7 +252,7 @@ def pause(checks, user, options):
     checks.check("a goal succeeds after RESUME", status(result) == "SUCCEEDED", outcome(result))
 
 
-PARTS = [goal, late_joiner, save_map, transforms, parameters, lifecycle_states, cancel, preempt, wrong_frame, unreachable, not_finite,
+PARTS = [goal, late_joiner, save_map, transforms, parameters, lifecycle_states, cancel, preempt, wrong_frame, in_a_wall, unreachable, not_finite,
          compute_and_follow, waypoints, behaviors, topics, clear_costmaps, initial_pose, pause, docking, load_map]
 
 
