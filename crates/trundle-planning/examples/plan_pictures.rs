@@ -302,5 +302,5 @@ fn obstacles() {
         );
     }
     plan.curves().for_each(|curve| picture.line(&along(curve), "stroke='#9aa5b1' stroke-width='2'"));
-    picture.save("obstacles");
+    picture.save("movers");
 }

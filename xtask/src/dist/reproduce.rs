@@ -54,15 +54,20 @@ fn git(root: &Path, args: &[&str]) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dist::{PROFILE, flags_of};
     use std::path::PathBuf;
 
-    /// A program whose bytes name its sources: a panic, and a path in its text.
-    const SOURCE: &str = "fn main() { assert!(std::env::args().count() < 9, \"{}\", file!()); }\n";
+    /// Writes sources among the build results. Their absolute path stands in the program, as that of a package of the registry does.
+    const BUILD: &str = "fn main() {\n    let folder = std::env::var(\"OUT_DIR\").unwrap();\n    \
+                         let text = \"fn path() -> &'static str { file!() }\";\n    \
+                         std::fs::write(folder + \"/path.rs\", text).unwrap();\n}\n";
+    const PROGRAM: &str =
+        "include!(concat!(env!(\"OUT_DIR\"), \"/path.rs\"));\nfn main() { println!(\"{}\", path()); }\n";
+    const MANIFEST: &str =
+        "[package]\nname = \"small\"\nversion = \"0.1.0\"\nedition = \"2024\"\n[workspace]\n";
 
-    /// Builds a small program in a folder as one of a release: with its flags, and the workspace's profile.
-    fn small_program(root: &Path) -> PathBuf {
-        std::fs::create_dir_all(root.join("src")).unwrap();
-        std::fs::write(root.join("src/main.rs"), SOURCE).unwrap();
+    /// The workspace's profiles `release` and `dist`, without those of packages.
+    fn profiles() -> String {
         let text = std::fs::read_to_string(crate::workspace::root().join("Cargo.toml")).unwrap();
         let manifest: toml::Table = text.parse().unwrap();
         let mut profiles = toml::Table::new();
@@ -71,23 +76,31 @@ mod tests {
             profile.remove("package");
             profiles.insert(name.to_owned(), profile.into());
         }
-        let package = "[package]\nname = \"small\"\nversion = \"0.1.0\"\nedition = \"2024\"\n[workspace]\n";
-        let profiles =
-            toml::to_string(&toml::Table::from_iter([("profile".to_owned(), profiles.into())])).unwrap();
-        std::fs::write(root.join("Cargo.toml"), format!("{package}{profiles}")).unwrap();
+        toml::to_string(&toml::Table::from_iter([("profile".to_owned(), profiles.into())])).unwrap()
+    }
+
+    /// Builds a small program in a folder as one of a release: with its flags, and its profile.
+    fn small_program(root: &Path) -> PathBuf {
+        std::fs::create_dir_all(root.join("src")).unwrap();
+        std::fs::write(root.join("build.rs"), BUILD).unwrap();
+        std::fs::write(root.join("src/main.rs"), PROGRAM).unwrap();
+        std::fs::write(root.join("Cargo.toml"), format!("{MANIFEST}{}", profiles())).unwrap();
         let target = root.join("target");
-        let flags = super::super::flags_of(root, &target);
         let mut cargo = Command::new(program::cargo_path());
-        cargo.args(["build", "--quiet", "--offline", "--profile", super::super::PROFILE]).current_dir(root);
-        cargo.env("RUSTFLAGS", flags).env("CARGO_TARGET_DIR", &target).env("CARGO_INCREMENTAL", "0");
-        assert!(cargo.stdin(Stdio::null()).status().unwrap().success());
-        target.join(super::super::PROFILE).join("small")
+        cargo.args(["build", "--quiet", "--offline", "--profile", PROFILE]).current_dir(root);
+        cargo.env("RUSTFLAGS", flags_of(root, &target)).env("CARGO_TARGET_DIR", &target);
+        let status = cargo.env("CARGO_INCREMENTAL", "0").stdin(Stdio::null()).status();
+        assert!(status.unwrap().success());
+        target.join(PROFILE).join("small")
     }
 
     #[test]
     fn a_program_has_the_same_bytes_at_every_path() {
         let folder = tempfile::tempdir().unwrap();
         let [a, b] = ["a", "a-clone/at/another/path"].map(|name| small_program(&folder.path().join(name)));
+        // Without the flags this would be the folder of the machine, and the bytes would differ.
+        let path = String::from_utf8(program::output(&a, &[]).unwrap()).unwrap();
+        assert!(path.starts_with("/trundle/target/"), "{path}");
         assert_eq!(sha256(&a).unwrap(), sha256(&b).unwrap());
     }
 }

@@ -79,7 +79,7 @@ goals reached or contacts. trundle's runs use its own simulator, with the benchm
 input and writes its motions on standard output. One command runs and evaluates it:
 
 ```sh tested in=clone
-cargo run --release -p trundle-docking --example corridor_bench -- --problems 50 --planner bench/docking/entry_example.py
+cargo run --release -p trundle-docking --example corridor_bench -- --problems 10 --planner bench/docking/entry_example.py
 ```
 
 That entry is an example of 20 lines. `--problems 5000` are the problems of the figures above.",
