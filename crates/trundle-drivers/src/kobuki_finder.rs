@@ -95,14 +95,15 @@ mod tests {
         let mut link = finder.connect().unwrap();
         link.write(b"hello").unwrap();
         let mut buffer = [0; 16];
-        device.read(&mut buffer, Duration::from_millis(500)).unwrap() == 5 && buffer.starts_with(b"hello")
+        device.read(&mut buffer, Duration::from_millis(500)).unwrap() > 0 && buffer.starts_with(b"hello")
     }
 
     #[test]
     fn a_kobuki_that_returns_at_another_port_is_found() {
         let (folder, mut finder) = finder();
         let (mut first, mut second) = (PseudoTerminal::open().unwrap(), PseudoTerminal::open().unwrap());
-        name(&folder, "usb-FTDI_FT232R_USB_UART_A1-if00-port0", &second);
+        let other = PseudoTerminal::open().unwrap();
+        name(&folder, "usb-FTDI_FT232R_USB_UART_A1-if00-port0", &other);
         name(&folder, IDS[0], &first);
         assert!(leads_to(&mut finder, &mut first));
         assert_eq!(finder.port(), first.port().display().to_string());

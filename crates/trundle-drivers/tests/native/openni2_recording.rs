@@ -13,7 +13,7 @@ use trundle_drivers::camera::{CameraError, CameraFrame, DepthCamera};
 const SENSOR_COLOR: c_int = 2;
 const SENSOR_DEPTH: c_int = 3;
 /// Duration of the recording: some frames of 30 Hz.
-const RECORDED: Duration = Duration::from_millis(200);
+const RECORDED: Duration = Duration::from_millis(500);
 
 type Object = *mut c_void;
 
@@ -103,8 +103,11 @@ fn a_recording_of_a_camera_comes_back_whole() {
     add_cropping(&file);
     let bytes = std::fs::read(&file).unwrap();
     let expected = IMAGE_RECORDS.map(|record| places(&bytes, record).count()).into_iter().min().unwrap();
-    assert!(expected >= 3, "{expected} images");
-    for selection in [Selection::Serial(file.to_str().unwrap().into()), Selection::File(file.clone())] {
+    assert!(expected >= 2, "{expected} images");
+    // A program plays each file once.
+    let copy = file.with_extension("oni");
+    std::fs::copy(&file, &copy).unwrap();
+    for selection in [Selection::Serial(file.to_str().unwrap().into()), Selection::File(copy)] {
         let mut camera = OpenNiCamera::open(&api, &selection, &settings(path.clone())).unwrap();
         assert!(!camera.info().is_live, "a base must not drive by it");
         let (start, mut frames) = (Instant::now(), Vec::new());

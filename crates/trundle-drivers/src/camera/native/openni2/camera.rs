@@ -53,8 +53,8 @@ enum Images {
 
 impl OpenNiCamera {
     /// Opens a camera and starts its streams in their default modes, with depth registered to colour if the camera offers it. The serial
-    /// number of `selection` is the URI of [`list_devices`]; `Dummy` is the driver's own test image. A recording plays as fast as it is read;
-    /// its depth counts as not registered, as a camera delivers it by default.
+    /// number of `selection` is the URI of [`list_devices`]; `Dummy` is the driver's own test image. A recording plays as fast as it is read,
+    /// once in the life of the program; its depth counts as not registered, as a camera delivers it by default.
     ///
     /// # Errors
     /// When the camera is missing or in use, it reports no field of view and the settings give no calibration, or it is a recording without

@@ -36,7 +36,8 @@ pub(super) enum Kind {
     Depth,
 }
 
-/// An open device. A drop closes the streams and the device; the library remains initialised.
+/// An open device. A drop closes the streams and the device; the library remains initialised. A recording remains open, with its streams
+/// stopped, until the program ends: the thread of its player reads the list of streams without a lock, and crashes if one is destroyed.
 #[derive(Debug)]
 pub(super) struct OpenDevice {
     api: Arc<OpenNiApi>,
@@ -236,15 +237,19 @@ impl OpenDevice {
 
 impl Drop for OpenDevice {
     fn drop(&mut self) {
+        let is_recording = self.is_recording();
         for stream in self.streams.into_iter().filter(|stream| !stream.is_null()) {
             // SAFETY: the stream is valid; stopping a stopped stream is allowed.
-            unsafe {
-                (self.api.oniStreamStop)(stream);
-                (self.api.oniStreamDestroy)(stream);
+            unsafe { (self.api.oniStreamStop)(stream) };
+            if !is_recording {
+                // SAFETY: the stream is valid and not used afterwards.
+                unsafe { (self.api.oniStreamDestroy)(stream) };
             }
         }
-        // SAFETY: the device is valid and its streams are destroyed.
-        unsafe { (self.api.oniDeviceClose)(self.device) };
+        if !is_recording {
+            // SAFETY: the device is valid and its streams are destroyed.
+            unsafe { (self.api.oniDeviceClose)(self.device) };
+        }
     }
 }
 
