@@ -138,18 +138,23 @@ def play_transforms(checks, case):
 
 
 def garbage_ids(checks, case):
-    """Cancel and result of goals that do not exist."""
+    """Cancel and result of goals that do not exist: answered as unknown, and named with the id."""
     robot, id = case.robot, UUID(uuid=np.full(16, 7, np.uint8))
-    for kind, service, request in (
-            (CancelGoal, "cancel_goal", CancelGoal.Request(goal_info=messages_goal(id))),
-            (NavigateToPose.Impl.GetResultService, "get_result", NavigateToPose.Impl.GetResultService.Request(goal_id=id))):
+    for kind, service, request, what in (
+            (CancelGoal, "cancel_goal", CancelGoal.Request(goal_info=messages_goal(id)), "a request to cancel is refused"),
+            (NavigateToPose.Impl.GetResultService, "get_result", NavigateToPose.Impl.GetResultService.Request(goal_id=id),
+             "a request for a result is refused")):
         client = robot.node.create_client(kind, f"navigate_to_pose/_action/{service}")
         robot.play(20, client.service_is_ready)
+        robot.kept["/diagnostics"] = []
         future = client.call_async(request)
         robot.play(20, future.done)
         answer = future.result() if future.done() else None
         good = answer is not None and (answer.return_code != 0 if service == "cancel_goal" else answer.status == 0)
         checks.check(f"{service} of an unknown id is answered as unknown", good, str(answer)[:80])
+        named_it = lambda: [text for text in case.reports("navigate_to_pose", (what,)) if "07" * 16 in text]
+        robot.play(FAULT_S, lambda: bool(named_it()))
+        checks.check(f"{service} of an unknown id is named", bool(named_it()), "; ".join(named_it()[:1]))
 
 
 def messages_goal(id):

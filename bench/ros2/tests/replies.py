@@ -74,7 +74,7 @@ def values(checks, caller, names, trundle):
     checks.check("the log names the service", "get_parameters: a reply has" in trundle.log.read_text())
 
 
-def settings(checks, caller):
+def settings(checks, caller, trundle):
     """What may change is set; a wrong type, a wrong value and what may not change are refused with the reason."""
     asked = [double(PATIENCE, 20.0), double(SPEED, 99.0), double("drive.wheel_radius_m", 0.1), double("no.such", 1.0),
              Parameter(name=SPEED, value=ParameterValue(type=ParameterType.PARAMETER_STRING, string_value="fast"))]
@@ -82,6 +82,8 @@ def settings(checks, caller):
     results = [(r.successful, r.reason) for r in answer.results] if answer else []
     checks.check("one of five is set", [good for good, _ in results] == [True, False, False, False, False], str(results))
     checks.check("each refusal has a reason", all(good or reason for good, reason in results))
+    said = trundle.log.read_text()
+    checks.check("the log names service, parameter and cause", f"set_parameters: a parameter was not set: {SPEED} is 99, expected" in said)
     answer = caller.own(GetParameters, "get_parameters", GetParameters.Request(names=[PATIENCE]))
     checks.check("the new value is read", answer is not None and answer.values[0].double_value == 20.0)
     request = SetParametersAtomically.Request(parameters=[double(PATIENCE, 30.0), double(SPEED, 99.0)])
@@ -110,7 +112,7 @@ def main():
         caller = Caller(options.node)
         names = lists(checks, caller)
         values(checks, caller, names, trundle)
-        settings(checks, caller)
+        settings(checks, caller, trundle)
         maps(checks, caller)
     finally:
         trundle.end()

@@ -1,10 +1,10 @@
 //! The robot as a ROS 2 node: its outputs, its actions and services, and its body if that comes by topics.
 
-use crate::body::{BodyDescription, BodySettings, OdometryReader, Ros2Body};
+use crate::body::{BodyDescription, BodySettings, Ros2Body};
 use crate::clock::RosClock;
 use crate::navigation::{self, ActiveGoal, Parameters};
 use crate::node::{NodeThread, RosNode};
-use crate::outputs::{OutputSettings, OutputSources, PublishedMap, RobotOutputs, RobotTopics};
+use crate::outputs::{OutputSettings, OutputSources, PublishedMap, RobotOutputs, RobotTopics, RunFrames};
 use crate::server::{SensorTopics, ServerSettings};
 use crate::{Ros2Error, Ros2Options};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -54,7 +54,8 @@ impl Ros2Robot {
         let (operator, link) = operator_link();
         let outputs =
             OutputSettings { publishes_scan: !has_laser, ..OutputSettings::of(options, robot, false) };
-        let parts = Parts::new(&mut node, options, robot, outputs, operator, body.clock())?;
+        let frames = RunFrames { names: options.frames.clone(), body_odometry: Some(body.odometry()) };
+        let parts = Parts::new(&mut node, options, robot, outputs, frames, (operator, body.clock()))?;
         let thread = Arc::new(node.start()?);
         let described = body.wait(timeout, is_cancelled)?;
         robot.camera = described.camera;
@@ -68,7 +69,7 @@ impl Ros2Robot {
         if has_laser {
             robot.sight = RangeSource::Laser;
         }
-        let node = parts.start(thread, robot, Some(body.odometry()))?;
+        let node = parts.start(thread, robot)?;
         Ok(Self { node, link, body, described })
     }
 
@@ -117,9 +118,10 @@ impl RobotNode {
         let (frames, stamped_commands) = (options.frames.clone(), options.stamped_commands);
         let settings = ServerSettings { frames, stamped_commands, raw_images };
         let sensors = observer(&mut node, &settings, robot, clock.clone())?;
-        let parts = Parts::new(&mut node, options, robot, outputs, operator, clock)?;
+        let frames = RunFrames::of_own_odometry(options.frames.clone());
+        let parts = Parts::new(&mut node, options, robot, outputs, frames, (operator, clock))?;
         let thread = Arc::new(node.start()?);
-        let offered = parts.start(thread, robot, None)?;
+        let offered = parts.start(thread, robot)?;
         Ok((Self { observer: Some(sensors), ..offered }, link))
     }
 
@@ -148,6 +150,7 @@ fn observer(
 struct Parts {
     topics: RobotTopics,
     settings: OutputSettings,
+    frames: RunFrames,
     operator: Operator,
     clock: RosClock,
     diagnostics: crate::node::Diagnostics,
@@ -160,32 +163,24 @@ impl Parts {
         options: &Ros2Options,
         robot: &RobotConfig,
         settings: OutputSettings,
-        operator: Operator,
-        clock: RosClock,
+        frames: RunFrames,
+        (operator, clock): (Operator, RosClock),
     ) -> Result<Self, Ros2Error> {
         let diagnostics = node.diagnostics();
         let topics = RobotTopics::new(node, &settings)?;
         let active = ActiveGoal::new(operator.clone(), clock.clone(), diagnostics.clone());
         let published_map = PublishedMap::default();
-        navigation::offer(node, &active, options, &published_map, robot)?;
+        navigation::offer(node, &active, options, &frames, &published_map, robot)?;
         Parameters::of(robot, options.use_sim_time).offer(node, &active)?;
-        Ok(Self { topics, settings, operator, clock, diagnostics, published_map })
+        Ok(Self { topics, settings, frames, operator, clock, diagnostics, published_map })
     }
 
-    fn start(
-        self,
-        thread: Arc<NodeThread>,
-        robot: &RobotConfig,
-        body_odometry: Option<OdometryReader>,
-    ) -> Result<RobotNode, Ros2Error> {
+    fn start(self, thread: Arc<NodeThread>, robot: &RobotConfig) -> Result<RobotNode, Ros2Error> {
         let sources = OutputSources {
             operator: self.operator,
             clock: self.clock,
             diagnostics: self.diagnostics,
-            publishes_odom_transform: body_odometry
-                .as_ref()
-                .is_none_or(|odometry| !odometry.has_transform(&self.settings.frames.base)),
-            body_odometry,
+            frames: self.frames,
             base_from_camera: robot.mount.base_from_camera(),
             published_map: self.published_map,
             node: Arc::clone(&thread),

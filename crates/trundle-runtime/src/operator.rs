@@ -34,6 +34,8 @@ pub enum OperatorCommand {
     /// Drive with this twist under the safety monitor, and pause the mission. Without another twist within [`TELEOP_SILENCE_S`] the robot
     /// stops.
     Drive(Twist2),
+    /// Stop until the program is started anew: the link by which others give and cancel goals has died. A person may still drive by hand.
+    GoalLinkLost,
 }
 
 /// Time after the operator's last twist at which the robot stops \[s\]. With a longer time, the robot would drive on after a loss of the
@@ -75,7 +77,7 @@ impl OperatorCommand {
                 Ok(self)
             }
             Self::LoadMap(grid) => require_recordable(grid.geometry()).map(|()| Self::LoadMap(grid)),
-            Self::Pause | Self::Continue => Ok(self),
+            Self::Pause | Self::Continue | Self::GoalLinkLost => Ok(self),
         }
     }
 }
@@ -285,6 +287,7 @@ mod tests {
         let text = |command: OperatorCommand| serde_json::to_string(&command).unwrap();
         assert_eq!(text(OperatorCommand::cancel()), r#"{"begin":[]}"#);
         assert_eq!(text(OperatorCommand::Pause), r#""pause""#);
+        assert_eq!(text(OperatorCommand::GoalLinkLost), r#""goal_link_lost""#);
         assert_eq!(text(OperatorCommand::Change(RunSetting::Speed(0.2))), r#"{"change":{"speed":0.2}}"#);
         let begin = OperatorCommand::Begin(Mission::new(vec![Task::Explore, Task::Return]).unwrap());
         assert_eq!(text(begin), r#"{"begin":["explore","return"]}"#);

@@ -19,6 +19,8 @@ pub enum MotionHold {
     BatteryEmpty,
     /// A person paused the robot.
     Paused,
+    /// The link by which others give and cancel goals has died.
+    GoalLinkLost,
 }
 
 impl fmt::Display for MotionHold {
@@ -32,6 +34,9 @@ impl fmt::Display for MotionHold {
             Self::Paused => {
                 f.write_str("paused by a person: the button or the command that paused it lets it go on")
             }
+            Self::GoalLinkLost => f.write_str(
+                "the link by which goals came has died, so nobody could cancel one: start the program anew",
+            ),
         }
     }
 }
@@ -49,6 +54,7 @@ mod tests {
             (MotionHold::DeviceLost(Device::Camera), "the camera does not answer"),
             (MotionHold::BatteryEmpty, "charge"),
             (MotionHold::Paused, "paused by a person"),
+            (MotionHold::GoalLinkLost, "start the program anew"),
         ];
         for (hold, remedy) in holds {
             assert!(hold.to_string().contains(remedy), "{hold}");

@@ -259,6 +259,15 @@ impl OdometryReader {
         self.frame().is_some_and(|odom| lock(&self.0.frames).pose(&odom, base).is_some())
     }
 
+    /// A reader of one reading, in the frame `frame`.
+    #[cfg(test)]
+    pub(crate) fn of_one(frame: &str, odometry: Odometry) -> Self {
+        let shared = Shared::new(RosClock::system(), Default::default());
+        *lock(&shared.odom_frame) = Some(frame.to_owned());
+        lock(&shared.odometry).push_back(odometry);
+        Self(Arc::new(shared))
+    }
+
     /// Name of the odometry's frame.
     #[must_use]
     pub fn frame(&self) -> Option<String> {
@@ -287,7 +296,7 @@ fn subscribe_frames(node: &mut RosNode, shared: &Arc<Shared>) -> Result<(), Ros2
                 shared.accept(&name, added);
             }
         };
-        node.subscribe(topic, &qos, None, on_frames)?;
+        node.subscribe_to_others(topic, &qos, on_frames)?;
     }
     Ok(())
 }

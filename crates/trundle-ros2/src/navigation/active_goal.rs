@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use trundle_app::operator::{Operator, OperatorError, RunView};
 use trundle_core::Twist2;
-use trundle_runtime::{Mission, OperatorCommand, Task, TaskEnd};
+use trundle_runtime::{Mission, OperatorCommand, Reason, Task, TaskEnd};
 
 /// Period of feedback. Source: ours; Nav2's is 10 ms to 1 s by action.
 const FEEDBACK_PERIOD: Duration = Duration::from_millis(100);
@@ -18,6 +18,43 @@ const STANDSTILL_SPEED: f64 = 0.02;
 /// Wait for the run to take a mission up. Source: ours; it takes one request a step.
 const START_TIMEOUT: Duration = Duration::from_secs(5);
 
+/// The time that a goal allows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TimeLimit {
+    /// The time.
+    pub time: Duration,
+    /// Whether it is for the first task alone.
+    pub is_of_first_task: bool,
+}
+
+impl TimeLimit {
+    /// The longest time. Source: ours, 31 years, as of options of the command line.
+    const MAX_S: f64 = 1e9;
+
+    /// A limit of the whole goal; none for 0 s and below, as in Nav2. `name` is the field, for the error.
+    ///
+    /// # Errors
+    /// When the time is not a number, or too long.
+    pub fn of_seconds(name: &str, seconds: f64) -> Result<Option<Self>, String> {
+        if seconds <= 0.0 {
+            return Ok(None);
+        }
+        let time = Duration::try_from_secs_f64(seconds).ok().filter(|time| time.as_secs_f64() <= Self::MAX_S);
+        let Some(time) = time else {
+            return Err(format!(
+                "{name} is {seconds} s, expected at most {} s, or 0 for no limit",
+                Self::MAX_S
+            ));
+        };
+        Ok(Some(Self { time, is_of_first_task: false }))
+    }
+
+    /// Whether the time is over after `passed`; `ended`: the tasks that have ended.
+    fn is_over(&self, passed: Duration, ended: &[(usize, TaskEnd)]) -> bool {
+        passed > self.time && !(self.is_of_first_task && !ended.is_empty())
+    }
+}
+
 /// A goal of an action that is being worked on.
 pub trait RunningGoal: Send {
     /// Sends feedback.
@@ -25,6 +62,9 @@ pub trait RunningGoal: Send {
 
     /// Whether the client requested its cancellation.
     fn is_canceling(&self) -> bool;
+
+    /// The reason why the goal fails although tasks are left; `ended`: the tasks that have ended.
+    fn failure(&self, ended: &[(usize, TaskEnd)]) -> Option<Reason>;
 
     /// Ends the goal.
     fn end(self: Box<Self>, end: GoalEnd, outcome: &NavigationOutcome);
@@ -48,14 +88,14 @@ struct Active {
     /// The goal's tasks that have ended.
     ended: Vec<(usize, TaskEnd)>,
     /// Time after which the goal fails.
-    time_limit: Option<Duration>,
+    time_limit: Option<TimeLimit>,
     /// Time of the final stop request, and the end and result of the goal after the stop.
     stopping: Option<(Instant, GoalEnd, NavigationOutcome)>,
     feedback_due: Instant,
 }
 
 impl Active {
-    fn new(goal: Box<dyn RunningGoal>, request: u64, view: &RunView, time_limit: Option<Duration>) -> Self {
+    fn new(goal: Box<dyn RunningGoal>, request: u64, view: &RunView, time_limit: Option<TimeLimit>) -> Self {
         let (now, start) = (Instant::now(), view.estimate.pose);
         let ended = Vec::new();
         Self { goal, request, since: now, start, ended, time_limit, stopping: None, feedback_due: now }
@@ -67,6 +107,14 @@ impl Active {
         if records.len() != self.ended.len() {
             self.ended = records.iter().map(|record| (record.index, record.end.clone())).collect();
         }
+    }
+
+    /// The end of a goal whose last request the run does not take up, after a wait.
+    fn untaken(&self, now: Instant) -> Option<(GoalEnd, NavigationOutcome)> {
+        let (since, end, outcome) = self.stopping.clone().unwrap_or_else(|| {
+            (self.since, GoalEnd::Aborted, NavigationOutcome::failed("the run did not take the goal up"))
+        });
+        (now - since > START_TIMEOUT).then_some((end, outcome))
     }
 
     fn end(self, end: GoalEnd, outcome: NavigationOutcome) {
@@ -110,7 +158,7 @@ impl ActiveGoal {
         &self,
         tasks: Vec<Task>,
         goal: Box<dyn RunningGoal>,
-        time_limit: Option<Duration>,
+        time_limit: Option<TimeLimit>,
     ) -> Result<(), String> {
         let Some(view) = self.view() else {
             return Err("the robot has not begun: wait for its first images".to_owned());
@@ -168,9 +216,7 @@ impl ActiveGoal {
             return Some((GoalEnd::Aborted, NavigationOutcome::replaced()));
         }
         if view.mission.id < active.request {
-            let is_late = now - active.since > START_TIMEOUT;
-            return is_late
-                .then(|| (GoalEnd::Aborted, NavigationOutcome::failed("the run did not take the goal up")));
+            return active.untaken(now);
         }
         if let Some((since, end, outcome)) = &active.stopping {
             let is_over = is_standing(view) || now - *since > STANDSTILL_TIMEOUT;
@@ -189,11 +235,14 @@ impl ActiveGoal {
         None
     }
 
-    /// Cancels the mission if the client requested it or the time is over.
+    /// Cancels the mission if the client requested it, the goal has failed, or the time is over.
     fn stop_where_asked(&self, active: &mut Active, now: Instant) {
-        let is_late = active.time_limit.is_some_and(|limit| now - active.since > limit);
+        let passed = now - active.since;
+        let is_late = active.time_limit.is_some_and(|limit| limit.is_over(passed, &active.ended));
         let (end, outcome) = if active.goal.is_canceling() {
             (GoalEnd::Canceled, NavigationOutcome::default())
+        } else if let Some(reason) = active.goal.failure(&active.ended) {
+            (GoalEnd::Aborted, NavigationOutcome::of_reason(reason))
         } else if is_late {
             (GoalEnd::Aborted, NavigationOutcome::timed_out())
         } else {
@@ -227,4 +276,159 @@ fn end_of(view: &RunView, ended: &[(usize, TaskEnd)]) -> (GoalEnd, NavigationOut
     let end = if outcome.reason.is_none() { GoalEnd::Succeeded } else { GoalEnd::Aborted };
     outcome.message = outcome.reason.as_ref().map(ToString::to_string).unwrap_or_default();
     (end, outcome)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use trundle_app::operator::{Activity, OperatorLink, operator_link};
+    use trundle_core::{Pose2, Stamp};
+    use trundle_runtime::TaskRecord;
+
+    /// What a goal was told.
+    #[derive(Default)]
+    struct Told {
+        is_canceling: AtomicBool,
+        feedbacks: Mutex<usize>,
+        end: Mutex<Option<(GoalEnd, NavigationOutcome)>>,
+    }
+
+    impl Told {
+        fn end(&self) -> Option<(GoalEnd, NavigationOutcome)> {
+            self.end.lock().unwrap().clone()
+        }
+    }
+
+    /// A goal that fails if its first task is put off.
+    struct TestGoal(Arc<Told>);
+
+    impl RunningGoal for TestGoal {
+        fn feedback(&mut self, _view: &RunView, _progress: &GoalProgress) {
+            *self.0.feedbacks.lock().unwrap() += 1;
+        }
+
+        fn is_canceling(&self) -> bool {
+            self.0.is_canceling.load(Ordering::Relaxed)
+        }
+
+        fn failure(&self, ended: &[(usize, TaskEnd)]) -> Option<Reason> {
+            match ended.first()? {
+                (0, TaskEnd::PutOff { reason }) => Some(reason.clone()),
+                _ => None,
+            }
+        }
+
+        fn end(self: Box<Self>, end: GoalEnd, outcome: &NavigationOutcome) {
+            *self.0.end.lock().unwrap() = Some((end, outcome.clone()));
+        }
+    }
+
+    /// A run that takes requests up when it is told to, and the goal of a client.
+    struct Rig {
+        link: OperatorLink,
+        active: ActiveGoal,
+        told: Arc<Told>,
+        since: Instant,
+    }
+
+    impl Rig {
+        /// A goal of two tasks whose first may take `limit`.
+        fn begin(limit: Option<TimeLimit>) -> Self {
+            let (operator, mut link) = operator_link();
+            let active = ActiveGoal::new(operator, RosClock::system(), Diagnostics::default());
+            link.publish_view(view(0, &[]));
+            let told = Arc::<Told>::default();
+            let tasks = vec![Task::go(Pose2::new(1.0, 0.0, 0.0)), Task::Dock];
+            active.begin(tasks, Box::new(TestGoal(Arc::clone(&told))), limit).unwrap();
+            let request = link.next_request().unwrap();
+            link.publish_view(view(request.id, &[]));
+            Self { link, active, told, since: Instant::now() }
+        }
+
+        fn tick(&self, after_s: f64) {
+            self.active.tick(self.since + Duration::from_secs_f64(after_s));
+        }
+
+        /// The run takes the waiting request up, which ends the mission.
+        fn take_cancel(&mut self) {
+            let request = self.link.next_request().expect("a request to cancel");
+            assert_eq!(request.command, OperatorCommand::cancel());
+            self.link.publish_view(view(request.id, &[]));
+        }
+
+        fn show_ended(&mut self, ends: &[TaskEnd]) {
+            let id = self.active.view().unwrap().mission.id;
+            self.link.publish_view(view(id, ends));
+        }
+    }
+
+    fn view(mission: u64, ends: &[TaskEnd]) -> RunView {
+        let activity = Activity { name: "driving", reason: None };
+        let mut view = RunView::of_activity(Stamp::default(), Pose2::IDENTITY, Twist2::ZERO, activity);
+        view.mission.id = mission;
+        let record = |(index, end): (usize, &TaskEnd)| TaskRecord {
+            index,
+            task: Task::Dock,
+            end: end.clone(),
+            from: Stamp::default(),
+            to: Stamp::default(),
+            pose: Pose2::IDENTITY,
+            bound: None,
+            before_restart: false,
+        };
+        view.mission.ended = Arc::new(ends.iter().enumerate().map(record).collect());
+        view
+    }
+
+    #[test]
+    fn a_late_cancel_waits_for_the_run_and_ends_as_canceled() {
+        let mut rig = Rig::begin(None);
+        rig.tick(10.0);
+        assert!(*rig.told.feedbacks.lock().unwrap() > 0 && rig.told.end().is_none());
+        rig.told.is_canceling.store(true, Ordering::Relaxed);
+        rig.tick(10.1);
+        rig.tick(10.12);
+        assert_eq!(rig.told.end(), None, "the run has not taken the request up");
+        rig.take_cancel();
+        rig.tick(10.14);
+        assert_eq!(rig.told.end(), Some((GoalEnd::Canceled, NavigationOutcome::default())));
+    }
+
+    #[test]
+    fn a_run_that_does_not_answer_ends_the_goal_as_asked() {
+        let rig = Rig::begin(None);
+        rig.told.is_canceling.store(true, Ordering::Relaxed);
+        rig.tick(10.0);
+        rig.tick(15.1);
+        assert_eq!(rig.told.end().unwrap().0, GoalEnd::Canceled);
+    }
+
+    #[test]
+    fn a_goal_that_fails_before_its_last_task_cancels_the_rest() {
+        let mut rig = Rig::begin(None);
+        let put_off = TaskEnd::PutOff { reason: Reason::MovingObstacle };
+        rig.show_ended(std::slice::from_ref(&put_off));
+        rig.tick(1.0);
+        rig.take_cancel();
+        rig.tick(1.1);
+        let (end, outcome) = rig.told.end().unwrap();
+        assert_eq!((end, outcome.reason), (GoalEnd::Aborted, Some(Reason::MovingObstacle)));
+        assert_eq!(outcome.ended, [(0, put_off)]);
+    }
+
+    #[test]
+    fn a_limit_of_the_first_task_is_over_with_it() {
+        let limit = TimeLimit { time: Duration::from_secs(5), is_of_first_task: true };
+        let mut rig = Rig::begin(Some(limit));
+        rig.show_ended(&[TaskEnd::Done]);
+        rig.tick(1.0);
+        rig.tick(100.0);
+        assert!(rig.link.next_request().is_none() && rig.told.end().is_none(), "docking has no limit");
+        let mut late = Rig::begin(Some(limit));
+        late.tick(5.1);
+        late.take_cancel();
+        late.tick(5.2);
+        assert!(late.told.end().unwrap().1.is_timeout);
+    }
 }

@@ -67,9 +67,55 @@ pub fn of_docking(reason: &Reason) -> u16 {
     reason.kinds().iter().find_map(code).unwrap_or(DockRobotResult::UNKNOWN)
 }
 
+/// Codes of a motion relative to the robot's pose: `Spin`, `BackUp`, `DriveOnHeading`.
+#[derive(Debug, Clone, Copy)]
+pub struct MotionCodes {
+    /// Something is in the way.
+    pub collision_ahead: u16,
+    /// The pose is unknown.
+    pub tf_error: u16,
+    /// Any other reason.
+    pub unknown: u16,
+}
+
+impl MotionCodes {
+    /// The code for a reason.
+    #[must_use]
+    pub fn of_reason(self, reason: &Reason) -> u16 {
+        let code = |kind: &ReasonKind| match kind {
+            ReasonKind::Obstacle
+            | ReasonKind::MovingObstacle
+            | ReasonKind::Contact
+            | ReasonKind::RepeatedContact
+            | ReasonKind::Cliff => Some(self.collision_ahead),
+            ReasonKind::PoseUnknown | ReasonKind::PoseUncertain => Some(self.tf_error),
+            _ => None,
+        };
+        reason.kinds().iter().find_map(code).unwrap_or(self.unknown)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_motion_collides_only_with_what_is_in_its_way() {
+        let codes = MotionCodes { collision_ahead: 703, tf_error: 702, unknown: 799 };
+        let of = |kind| Reason::Restored { text: String::new(), kinds: vec![ReasonKind::NoProgress, kind] };
+        for (reason, code) in [
+            (of(ReasonKind::Obstacle), 703),
+            (of(ReasonKind::Contact), 703),
+            (of(ReasonKind::Cliff), 703),
+            (Reason::MovingObstacle, 703),
+            (Reason::PoseUnknown, 702),
+            (of(ReasonKind::ImageMissing), 799),
+            (of(ReasonKind::Paused), 799),
+            (Reason::Interrupted, 799),
+        ] {
+            assert_eq!(codes.of_reason(&reason), code, "{reason:?}");
+        }
+    }
 
     #[test]
     fn unreachable_goals_have_the_planners_codes() {

@@ -22,6 +22,12 @@ impl NavigationOutcome {
         Self { message: message.to_owned(), ..Self::default() }
     }
 
+    /// A failure for a reason of the robot.
+    #[must_use]
+    pub fn of_reason(reason: Reason) -> Self {
+        Self { reason: Some(reason.clone()), ..Self::failed(&reason.to_string()) }
+    }
+
     /// The outcome of a goal replaced by another.
     #[must_use]
     pub fn replaced() -> Self {

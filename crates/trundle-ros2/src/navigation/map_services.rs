@@ -15,8 +15,11 @@ use std::path::Path;
 use std::sync::Arc;
 use trundle_app::operator::MapView;
 use trundle_core::{OccupancyGrid, Stamp};
-use trundle_io::{MapImage, map_picture, map_yaml, read_map, replace_file};
+use trundle_io::{MapDescription, MapImage, map_picture, map_yaml, read_map, replace_file};
 use trundle_runtime::{OperatorCommand, RobotConfig, require_loadable};
+
+/// Size above which a YAML file is no description of a map \[bytes\]: these have some 200. Source: ours.
+const MAX_YAML_BYTES: u64 = 65_536;
 
 /// Offers `map_server/map`, `map_saver/save_map`, `map_server/load_map` and the clearing of both costmaps.
 ///
@@ -89,10 +92,36 @@ fn save(request: &SaveMapRequest, published: &PublishedMap) -> Result<(), String
     }
     let (map, _) = published.newest().ok_or("no map has been published yet")?;
     let (file, bytes) = map_picture(name, &map.grid, image).map_err(|error| error.to_string())?;
-    replace_file(&url.with_file_name(&file), &bytes).map_err(|error| error.to_string())?;
-    let yaml = map_yaml(&map.grid, &file);
-    replace_file(&url.with_file_name(format!("{name}.yaml")), yaml.as_bytes())
-        .map_err(|error| error.to_string())
+    let (picture, yaml) = (url.with_file_name(&file), url.with_file_name(format!("{name}.yaml")));
+    require_free_or_map(&yaml, &picture)?;
+    replace_file(&picture, &bytes).map_err(|error| error.to_string())?;
+    replace_file(&yaml, map_yaml(&map.grid, &file).as_bytes()).map_err(|error| error.to_string())
+}
+
+/// Refuses to replace a file that is no map: anybody on the network may name any path.
+fn require_free_or_map(yaml: &Path, picture: &Path) -> Result<(), String> {
+    let is_there = |path: &Path| path.symlink_metadata().is_ok();
+    let refused = |path: &Path| {
+        Err(format!(
+            "{} is no map of this name and is not replaced: give map_url another name",
+            path.display()
+        ))
+    };
+    let Some(map) = is_there(yaml).then(|| described_map(yaml)) else {
+        return if is_there(picture) { refused(picture) } else { Ok(()) };
+    };
+    match map {
+        None => refused(yaml),
+        Some(map) if is_there(picture) && map.picture_path() != picture => refused(picture),
+        Some(_) => Ok(()),
+    }
+}
+
+/// The description of a map in a file, if the file is one.
+fn described_map(yaml: &Path) -> Option<MapDescription> {
+    let is_small = std::fs::metadata(yaml).is_ok_and(|file| file.is_file() && file.len() <= MAX_YAML_BYTES);
+    let text = is_small.then(|| std::fs::read_to_string(yaml).ok()).flatten()?;
+    MapDescription::parse(yaml, text).ok()
 }
 
 /// Reason why a map is not loaded: Nav2's code and a sentence.
@@ -169,6 +198,36 @@ mod tests {
         save(&request, &own).unwrap();
         let saved = trundle_io::read_map(&folder.join("saved.yaml")).unwrap();
         assert_eq!(saved.cells(), own.newest().unwrap().0.grid.cells());
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn a_map_replaces_a_map_of_its_name_and_no_other_file() {
+        let folder = std::env::temp_dir().join(format!("trundle-keep-files-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let own = published("#..\n#??\n###");
+        let save = |name: &str, format: &str| {
+            let map_url = folder.join(name).display().to_string();
+            save(
+                &SaveMapRequest { map_url, image_format: format.to_owned(), ..SaveMapRequest::default() },
+                &own,
+            )
+        };
+        save("room", "pgm").unwrap();
+        save("room", "pgm").unwrap();
+        save("room", "png").unwrap();
+        let refused = |name: &str, format: &str, file: &str| {
+            let before = std::fs::read(folder.join(file)).unwrap();
+            let why = save(name, format).unwrap_err();
+            assert!(why.contains(file) && why.contains("not replaced"), "{why}");
+            assert_eq!(std::fs::read(folder.join(file)).unwrap(), before);
+        };
+        refused("room", "pgm", "room.pgm");
+        std::fs::write(folder.join("robot.yaml"), "wheel_radius_m: 0.035\n").unwrap();
+        refused("robot", "pgm", "robot.yaml");
+        assert!(!folder.join("robot.pgm").exists(), "nothing is written beside it");
+        std::fs::write(folder.join("photo.png"), "holidays").unwrap();
+        refused("photo", "png", "photo.png");
         std::fs::remove_dir_all(&folder).unwrap();
     }
 

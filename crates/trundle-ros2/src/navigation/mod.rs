@@ -14,7 +14,7 @@ mod pose_inputs;
 mod remaining;
 mod teleop_input;
 
-pub use active_goal::{ActiveGoal, GoalProgress, RunningGoal};
+pub use active_goal::{ActiveGoal, GoalProgress, RunningGoal, TimeLimit};
 pub use goal_outcome::NavigationOutcome;
 pub use navigation_action::{GoalContext, NavigationAction, NavigationRefusal};
 pub use parameters::Parameters;
@@ -24,7 +24,7 @@ use crate::generated::nav2_msgs::{
     Spin, UndockRobot,
 };
 use crate::node::RosNode;
-use crate::outputs::PublishedMap;
+use crate::outputs::{PublishedMap, RunFrames};
 use crate::{Ros2Error, Ros2Options};
 use trundle_runtime::RobotConfig;
 
@@ -36,10 +36,10 @@ pub fn offer(
     node: &mut RosNode,
     active: &ActiveGoal,
     options: &Ros2Options,
+    frames: &RunFrames,
     published_map: &PublishedMap,
     robot: &RobotConfig,
 ) -> Result<(), Ros2Error> {
-    let frames = &options.frames;
     navigation_action::offer::<NavigateToPose>(node, "navigate_to_pose", active, frames)?;
     navigation_action::offer::<NavigateThroughPoses>(node, "navigate_through_poses", active, frames)?;
     navigation_action::offer::<FollowWaypoints>(node, "follow_waypoints", active, frames)?;
@@ -52,7 +52,7 @@ pub fn offer(
     path_planner::offer(node, active, frames, robot)?;
     pose_inputs::offer(node, active, frames)?;
     teleop_input::offer(node, active, options.stamped_commands)?;
-    map_services::offer(node, active, published_map, frames, robot)?;
+    map_services::offer(node, active, published_map, &frames.names, robot)?;
     lifecycle::offer(node, active)?;
     let followed = active.clone();
     node.every_tick(move |now| followed.tick(now));

@@ -1,20 +1,20 @@
 //! An action that the robot performs as a mission, and its server.
 
-use super::active_goal::{ActiveGoal, GoalProgress, RunningGoal};
+use super::active_goal::{ActiveGoal, GoalProgress, RunningGoal, TimeLimit};
 use super::goal_outcome::NavigationOutcome;
 use super::goal_pose::GoalPoseError;
 use crate::Ros2Error;
 use crate::interface::ActionType;
 use crate::node::{ActionHandle, GoalEnd, GoalHandler, GoalId, RosNode};
-use crate::outputs::FrameNames;
-use std::time::{Duration, Instant};
+use crate::outputs::RunFrames;
+use std::time::Instant;
 use trundle_app::operator::RunView;
-use trundle_runtime::Task;
+use trundle_runtime::{Reason, Task, TaskEnd};
 
 /// Facts of the run for an action.
 pub struct GoalContext<'c> {
-    /// Names of frames.
-    pub frames: &'c FrameNames,
+    /// The frames.
+    pub frames: &'c RunFrames,
     /// The newest view of the run.
     pub view: Option<&'c RunView>,
 }
@@ -41,7 +41,15 @@ pub trait NavigationAction: ActionType<Result: Default> + 'static {
     ) -> Result<Vec<Task>, NavigationRefusal<Self::Result>>;
 
     /// The time that the goal allows.
-    fn time_limit(_goal: &Self::Goal) -> Option<Duration> {
+    ///
+    /// # Errors
+    /// Reason why the goal is refused: its time is no time.
+    fn time_limit(_goal: &Self::Goal) -> Result<Option<TimeLimit>, String> {
+        Ok(None)
+    }
+
+    /// The reason why the goal fails although tasks are left; `ended`: the tasks that have ended. Default: never.
+    fn failure(_goal: &Self::Goal, _ended: &[(usize, TaskEnd)]) -> Option<Reason> {
         None
     }
 
@@ -50,7 +58,7 @@ pub trait NavigationAction: ActionType<Result: Default> + 'static {
         goal: &Self::Goal,
         view: &RunView,
         progress: &GoalProgress,
-        frames: &FrameNames,
+        frames: &RunFrames,
     ) -> Self::Feedback;
 
     /// The result, after `time_s` seconds.
@@ -65,7 +73,7 @@ pub fn offer<A: NavigationAction>(
     node: &mut RosNode,
     name: &str,
     active: &ActiveGoal,
-    frames: &FrameNames,
+    frames: &RunFrames,
 ) -> Result<(), Ros2Error> {
     let (active, frames) = (active.clone(), frames.clone());
     let clock = active.clock();
@@ -84,7 +92,7 @@ pub fn pose_error<R>(error: GoalPoseError, failed: impl FnOnce(String) -> R) -> 
 struct Handler<A: ActionType> {
     handle: ActionHandle<A>,
     active: ActiveGoal,
-    frames: FrameNames,
+    frames: RunFrames,
 }
 
 impl<A: NavigationAction> GoalHandler<A> for Handler<A> {
@@ -98,7 +106,7 @@ impl<A: NavigationAction> GoalHandler<A> for Handler<A> {
                 Ok(())
             }
             Ok(tasks) => {
-                let limit = A::time_limit(&goal);
+                let limit = A::time_limit(&goal)?;
                 let (handle, frames) = (self.handle.clone(), self.frames.clone());
                 let running = Running::<A> { handle, id, goal, since: Instant::now(), frames };
                 self.active.begin(tasks, Box::new(running), limit)
@@ -116,7 +124,7 @@ struct Running<A: ActionType> {
     id: GoalId,
     goal: A::Goal,
     since: Instant,
-    frames: FrameNames,
+    frames: RunFrames,
 }
 
 impl<A: NavigationAction> RunningGoal for Running<A> {
@@ -126,6 +134,10 @@ impl<A: NavigationAction> RunningGoal for Running<A> {
 
     fn is_canceling(&self) -> bool {
         self.handle.is_canceling(&self.id)
+    }
+
+    fn failure(&self, ended: &[(usize, TaskEnd)]) -> Option<Reason> {
+        A::failure(&self.goal, ended)
     }
 
     fn end(self: Box<Self>, end: GoalEnd, outcome: &NavigationOutcome) {

@@ -11,7 +11,7 @@ use crate::generated::rcl_interfaces::{
     ParameterType, ParameterValue, SetParameters, SetParametersAtomically, SetParametersAtomicallyResponse,
     SetParametersResponse, SetParametersResult,
 };
-use crate::node::RosNode;
+use crate::node::{Diagnostics, RosNode};
 use crate::wire::Bytes;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -19,6 +19,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use trundle_runtime::settings::reference;
 use trundle_runtime::{OperatorCommand, RobotConfig, RunSetting};
 
+/// Name of the service that sets parameters one by one.
+const SET: &str = "~/set_parameters";
+/// Name of the service that sets all parameters or none.
+const SET_ATOMICALLY: &str = "~/set_parameters_atomically";
 /// Reason why a parameter is not set.
 const READ_ONLY: &str =
     "this setting cannot change while the robot runs: set it in the robot file and start trundle anew";
@@ -114,7 +118,7 @@ impl Parameters {
         let (name, value) = (&asked.name, &asked.value);
         let all = self.all();
         let own = all.get(name).ok_or_else(|| format!("there is no parameter {name}"))?;
-        let (min, max) = own.range.ok_or(READ_ONLY)?;
+        let (min, max) = own.range.ok_or_else(|| format!("{name}: {READ_ONLY}"))?;
         if value.r#type != own.value.r#type {
             let (found, expected) = (type_name(value.r#type), type_name(own.value.r#type));
             return Err(format!("type of {name} is {found}, expected {expected}"));
@@ -122,7 +126,7 @@ impl Parameters {
         if !(min..=max).contains(&value.double_value) {
             return Err(format!("{name} is {}, expected {min} to {max}", value.double_value));
         }
-        RunSetting::of_key(name, value.double_value).ok_or_else(|| READ_ONLY.to_owned())
+        RunSetting::of_key(name, value.double_value).ok_or_else(|| format!("{name}: {READ_ONLY}"))
     }
 
     /// All of the changes, or none: the first that cannot be made is named before any is sent.
@@ -162,19 +166,39 @@ impl Parameters {
         node.serve::<ListParameters>("~/list_parameters", move |request| ListParametersResponse {
             result: own.list(&request),
         })?;
-        let (own, run) = (self.clone(), active.clone());
-        node.serve::<SetParameters>("~/set_parameters", move |request| SetParametersResponse {
+        let (own, run, report) = (self.clone(), active.clone(), Refusals::of(node, SET));
+        node.serve::<SetParameters>(SET, move |request| SetParametersResponse {
             results: request
                 .parameters
                 .iter()
-                .map(|asked| own.set(asked, |command| send(&run, command)))
+                .map(|asked| report.noted(own.set(asked, |command| send(&run, command))))
                 .collect(),
         })?;
-        let (own, run) = (self.clone(), active.clone());
-        node.serve::<SetParametersAtomically>("~/set_parameters_atomically", move |request| {
-            let result = own.set_all(&request.parameters, |command| send(&run, command));
+        let (own, run, report) = (self.clone(), active.clone(), Refusals::of(node, SET_ATOMICALLY));
+        node.serve::<SetParametersAtomically>(SET_ATOMICALLY, move |request| {
+            let result = report.noted(own.set_all(&request.parameters, |command| send(&run, command)));
             SetParametersAtomicallyResponse { result }
         })
+    }
+}
+
+/// Reports refused changes under the name of their service.
+struct Refusals {
+    diagnostics: Diagnostics,
+    name: String,
+}
+
+impl Refusals {
+    fn of(node: &RosNode, service: &str) -> Self {
+        Self { diagnostics: node.diagnostics(), name: node.names().resolve(service) }
+    }
+
+    /// The result, after a report if it is a refusal.
+    fn noted(&self, result: SetParametersResult) -> SetParametersResult {
+        if !result.successful {
+            self.diagnostics.warn(&self.name, format!("a parameter was not set: {}", result.reason));
+        }
+        result
     }
 }
 
@@ -259,7 +283,7 @@ mod tests {
             (asked(speed, 1.into()), "type of limits.v_m_s is integer, expected double"),
             (asked(speed, "fast".into()), "type of limits.v_m_s is string, expected double"),
             (asked("no.such", 1.0.into()), "there is no parameter no.such"),
-            (asked("drive.wheel_radius_m", 0.1.into()), "this setting cannot change"),
+            (asked("drive.wheel_radius_m", 0.1.into()), "drive.wheel_radius_m: this setting cannot change"),
         ];
         for (asked, reason) in refused {
             let result = set(asked);

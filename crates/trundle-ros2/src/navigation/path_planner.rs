@@ -11,7 +11,7 @@ use crate::generated::nav2_msgs::{
     ComputePathToPose, ComputePathToPoseGoal as Goal, ComputePathToPoseResult as Outcome,
 };
 use crate::node::{ActionHandle, GoalEnd, GoalHandler, GoalId, RosNode, arrives, qos};
-use crate::outputs::{FrameNames, OutputTopic};
+use crate::outputs::{OutputTopic, RunFrames};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Instant;
@@ -45,7 +45,7 @@ struct RequestedPlan {
 pub fn offer(
     node: &mut RosNode,
     active: &ActiveGoal,
-    frames: &FrameNames,
+    frames: &RunFrames,
     robot: &RobotConfig,
 ) -> Result<(), Ros2Error> {
     let unusable = |error| Ros2Error::create("the planner", error);
@@ -57,7 +57,7 @@ pub fn offer(
     let handle = ActionHandle::<ComputePathToPose>::offer(node, "compute_path_to_pose", clock, |handle| {
         Box::new(Handler { handle, active: own, frames: own_frames, plans })
     })?;
-    let outputs = PlanOutputs { handle, whole_path, frame: frames.map.clone() };
+    let outputs = PlanOutputs { handle, whole_path, frame: frames.names.map.clone() };
     let thread = std::thread::Builder::new().name("ros2-planner".to_owned());
     thread.spawn(move || outputs.plan_all(planner, &wanted))?;
     Ok(())
@@ -66,7 +66,7 @@ pub fn offer(
 struct Handler {
     handle: ActionHandle<ComputePathToPose>,
     active: ActiveGoal,
-    frames: FrameNames,
+    frames: RunFrames,
     plans: SyncSender<RequestedPlan>,
 }
 

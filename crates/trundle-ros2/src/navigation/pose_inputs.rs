@@ -7,7 +7,7 @@ use crate::convert::pose;
 use crate::generated::geometry_msgs::{PoseStamped, PoseWithCovarianceStamped};
 use crate::generated::nav2_msgs::{SetInitialPose, SetInitialPoseResponse};
 use crate::node::{Diagnostics, MAX_GOALS_PER_SECOND, RosNode, qos};
-use crate::outputs::FrameNames;
+use crate::outputs::RunFrames;
 use std::time::{Duration, Instant};
 use trundle_core::Invalid;
 use trundle_runtime::{OperatorCommand, PoseGuess, Task};
@@ -21,7 +21,7 @@ const DEFAULT_HEADING_SIGMA_RAD: f64 = 0.26;
 ///
 /// # Errors
 /// When a topic or the service cannot be created.
-pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &FrameNames) -> Result<(), Ros2Error> {
+pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &RunFrames) -> Result<(), Ros2Error> {
     let (goals, own, diagnostics) = (active.clone(), frames.clone(), node.diagnostics());
     let mut limit = RateLimit::default();
     node.subscribe("goal_pose", &qos::reliable(1), None, move |goal: PoseStamped| {
@@ -44,7 +44,7 @@ pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &FrameNames) -> Re
 }
 
 /// Drives to a clicked goal.
-fn begin(active: &ActiveGoal, goal: &PoseStamped, frames: &FrameNames) -> Result<(), String> {
+fn begin(active: &ActiveGoal, goal: &PoseStamped, frames: &RunFrames) -> Result<(), String> {
     let view = active.view();
     let pose = in_map(goal, frames, view.as_deref()).map_err(|error| match error {
         GoalPoseError::Invalid(error) => error.to_string(),
@@ -57,14 +57,14 @@ fn begin(active: &ActiveGoal, goal: &PoseStamped, frames: &FrameNames) -> Result
 fn set_pose(
     active: &ActiveGoal,
     message: &PoseWithCovarianceStamped,
-    frames: &FrameNames,
+    frames: &RunFrames,
     name: &str,
     diagnostics: &Diagnostics,
 ) {
-    let guess = if message.header.frame_id.trim_start_matches('/') == frames.map {
+    let guess = if message.header.frame_id.trim_start_matches('/') == frames.names.map {
         guess(message).map_err(|error| error.to_string())
     } else {
-        Err(format!("frame of the pose is '{}', expected {}", message.header.frame_id, frames.map))
+        Err(format!("frame of the pose is '{}', expected {}", message.header.frame_id, frames.names.map))
     };
     let sent = guess
         .and_then(|guess| active.send(OperatorCommand::SetPose(guess)).map_err(|error| error.to_string()));

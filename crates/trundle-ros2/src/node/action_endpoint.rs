@@ -1,11 +1,11 @@
 //! An action server with its goals.
 
 use super::event_loop::Endpoint;
-use super::goals::{GoalEnd, GoalId, Goals, ResultAnswer};
+use super::goals::{GoalEnd, GoalId, Goals, ResultAnswer, unknown};
 use super::{Diagnostics, RosNode, reply};
 use crate::Ros2Error;
 use crate::clock::RosClock;
-use crate::generated::action_msgs::{CancelGoalRequest, CancelGoalResponse};
+use crate::generated::action_msgs::{CancelGoalRequest, CancelGoalResponse, GoalStatus};
 use crate::interface::ActionType;
 use ros2_client::action::{
     ActionServer, GetResultResponse, GoalId as Uuid, GoalStatusEnum, SendGoalRequest, SendGoalResponse,
@@ -215,6 +215,10 @@ where
         };
         let asked: CancelGoalRequest = in_form_of(&asked).unwrap_or_default();
         let (response, ids) = inner.goals.cancel(&asked);
+        if response.return_code == CancelGoalResponse::ERROR_UNKNOWN_GOAL_ID {
+            let why = unknown(&asked.goal_info.goal_id.uuid);
+            inner.diagnostics.warn(&inner.name, format!("a request to cancel is refused: {why}"));
+        }
         if let Some(response) = in_form_of::<CancelGoalResponse, _>(&response)
             && inner.server.send_cancel_response(request, response).is_err()
         {
@@ -237,9 +241,13 @@ where
                 return self.on_unreadable("request for a result", &error);
             }
         };
-        if let ResultAnswer::Now(status, result) = inner.goals.result(asked.goal_id.uuid.as_bytes(), request)
-        {
-            inner.send_result(request, status, result);
+        match inner.goals.result(asked.goal_id.uuid.as_bytes(), request) {
+            ResultAnswer::Now(status, result) => inner.send_result(request, status, result),
+            ResultAnswer::Later => {}
+            ResultAnswer::Never(why) => {
+                inner.diagnostics.warn(&inner.name, format!("a request for a result is refused: {why}"));
+                inner.send_result(request, GoalStatus::STATUS_UNKNOWN, A::Result::default());
+            }
         }
         true
     }

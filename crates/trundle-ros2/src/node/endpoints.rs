@@ -4,7 +4,7 @@ use super::event_loop::Endpoint;
 use super::{Diagnostics, TopicMonitor, reply};
 use ros2_client::dds::rustdds::mio1::event::Source;
 use ros2_client::dds::rustdds::mio1::{Interest, Registry, Token};
-use ros2_client::{Message, RmwRequestId, Server, Subscription};
+use ros2_client::{Gid, Message, RmwRequestId, Server, Subscription};
 use std::io;
 use std::sync::Arc;
 
@@ -18,6 +18,16 @@ pub(super) struct Subscribed<M: Message + Send + 'static, F> {
     pub name: String,
     pub monitor: Arc<TopicMonitor>,
     pub diagnostics: Diagnostics,
+    /// The node, if its own messages are left out.
+    pub left_out: Option<Gid>,
+}
+
+/// Length of the part of an identifier that all publishers of a node share. Source: DDSI-RTPS, 8.2.4.1.
+const PREFIX_BYTES: usize = 12;
+
+/// Whether a publisher belongs to `node`.
+fn is_of_node(publisher: Gid, node: Gid) -> bool {
+    publisher.as_bytes()[..PREFIX_BYTES] == node.as_bytes()[..PREFIX_BYTES]
 }
 
 impl<M: Message + Send + 'static, F: FnMut(M) + Send> Endpoint for Subscribed<M, F> {
@@ -28,6 +38,8 @@ impl<M: Message + Send + 'static, F: FnMut(M) + Send> Endpoint for Subscribed<M,
     fn take_all(&mut self) {
         for _ in 0..MAX_TAKEN_AT_ONCE {
             match self.subscription.take() {
+                Ok(Some((_, info)))
+                    if self.left_out.is_some_and(|node| is_of_node(info.publisher_gid(), node)) => {}
                 Ok(Some((message, _))) => {
                     self.monitor.on_message();
                     (self.handler)(message);

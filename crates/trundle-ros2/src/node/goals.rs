@@ -60,6 +60,8 @@ pub enum ResultAnswer<R> {
     Now(i8, R),
     /// The result follows at the end of the goal.
     Later,
+    /// None comes, and the reason: the answer is an empty result with the status unknown.
+    Never(String),
 }
 
 /// The goals of an action server.
@@ -164,7 +166,7 @@ impl<R: Clone + Default> Goals<R> {
         self.goals.get(id).is_some_and(|goal| goal.status == GoalStatus::STATUS_CANCELING)
     }
 
-    /// The answer to a request for the result of a goal. An unknown goal has an empty result with the status unknown.
+    /// The answer to a request for the result of a goal.
     pub fn result(&mut self, id: &GoalId, request: RmwRequestId) -> ResultAnswer<R> {
         match self.goals.get_mut(id) {
             Some(Goal { result: Some(result), status, .. }) => ResultAnswer::Now(*status, result.clone()),
@@ -172,7 +174,10 @@ impl<R: Clone + Default> Goals<R> {
                 goal.waiting.push(request);
                 ResultAnswer::Later
             }
-            _ => ResultAnswer::Now(GoalStatus::STATUS_UNKNOWN, R::default()),
+            Some(_) => {
+                ResultAnswer::Never(format!("more than {MAX_WAITING} requests wait for the result of a goal"))
+            }
+            None => ResultAnswer::Never(unknown(id)),
         }
     }
 
@@ -196,6 +201,15 @@ impl<R: Clone + Default> Goals<R> {
         let Some((_, id)) = ended.min() else { return false };
         self.goals.remove(&id).is_some()
     }
+}
+
+/// The sentence about an id that no goal has.
+pub(super) fn unknown(id: &GoalId) -> String {
+    let id: String = id.iter().map(|byte| format!("{byte:02x}")).collect();
+    format!(
+        "no goal has the id {id}, expected that of an accepted goal, at most {} s after its end",
+        RESULT_LIFETIME.as_secs()
+    )
 }
 
 fn info(id: &GoalId, stamp: i64) -> GoalInfo {
@@ -224,7 +238,10 @@ mod tests {
         assert_eq!(goals.cancel(&cancel(id)).0.return_code, CancelGoalResponse::ERROR_GOAL_TERMINATED);
         let later = now + RESULT_LIFETIME;
         goals.accept([8; 16], 6, later).unwrap();
-        assert_eq!(goals.result(&id, RmwRequestId::default()), ResultAnswer::Now(0, 0));
+        let ResultAnswer::Never(why) = goals.result(&id, RmwRequestId::default()) else {
+            panic!("it is forgotten")
+        };
+        assert!(why.starts_with("no goal has the id 0707"), "{why}");
     }
 
     #[test]

@@ -2,12 +2,13 @@
 
 use ros2_client::qos::{Durability, History, QosProfile, WhenFull};
 
-/// Readings and images: the newest count, none is sent twice.
+/// Subscribers of readings, and publishers of images: the newest count, none is sent twice. It reads reliable publishers too.
 pub fn sensor(depth: usize) -> QosProfile {
     QosProfile::default().reliability_best_effort().history(History::KeepLast { depth })
 }
 
-/// Every message arrives; a full queue refuses the newest and never delays the sender.
+/// Publishers of readings, commands and states \[REP 2003\]: every message arrives at reliable readers, the others get what is not lost. A
+/// full queue refuses the newest and never delays the sender.
 pub fn reliable(depth: usize) -> QosProfile {
     QosProfile::default().reliability_reliable(WhenFull::Fail).history(History::KeepLast { depth })
 }

@@ -7,10 +7,10 @@ use crate::Ros2Error;
 use crate::clock::RosClock;
 use crate::interface::{ActionType, MessageType, ServiceType};
 use ros2_client::action::{ActionServer, ActionServerQosPolicies};
-use ros2_client::dds::rustdds::DomainParticipantBuilder;
+use ros2_client::dds::rustdds::{DomainParticipantBuilder, RTPSEntity};
 use ros2_client::qos::QosProfile;
 use ros2_client::{
-    ActionTypeName, Context, MessageTypeName, Node, NodeName, NodeOptions, Publisher, RmwRequestId,
+    ActionTypeName, Context, Gid, MessageTypeName, Node, NodeName, NodeOptions, Publisher, RmwRequestId,
     ServiceMapping, ServiceTypeName,
 };
 use std::sync::Arc;
@@ -160,6 +160,30 @@ impl RosNode {
         limit: Option<Duration>,
         handler: impl FnMut(M) + Send + 'static,
     ) -> Result<Arc<TopicMonitor>, Ros2Error> {
+        self.subscribe_except(topic, qos, (limit, None), handler)
+    }
+
+    /// As [`RosNode::subscribe`] without a limit, except for messages of this node itself.
+    ///
+    /// # Errors
+    /// When the name is not allowed or the topic cannot be created.
+    pub fn subscribe_to_others<M: MessageType>(
+        &mut self,
+        topic: &str,
+        qos: &QosProfile,
+        handler: impl FnMut(M) + Send + 'static,
+    ) -> Result<(), Ros2Error> {
+        let own = Gid::from(self.context.domain_participant().guid());
+        self.subscribe_except(topic, qos, (None, Some(own)), handler).map(drop)
+    }
+
+    fn subscribe_except<M: MessageType>(
+        &mut self,
+        topic: &str,
+        qos: &QosProfile,
+        (limit, left_out): (Option<Duration>, Option<Gid>),
+        handler: impl FnMut(M) + Send + 'static,
+    ) -> Result<Arc<TopicMonitor>, Ros2Error> {
         let name = self.names.resolve(topic);
         let topic = self.topic::<M>(topic, qos)?;
         let subscription = self.node.create_subscription(&topic, Some(qos.clone()));
@@ -173,7 +197,7 @@ impl RosNode {
         self.monitors.push(Arc::clone(&monitor));
         let diagnostics = self.diagnostics.clone();
         let subscribed =
-            Subscribed { subscription, handler, name, monitor: Arc::clone(&monitor), diagnostics };
+            Subscribed { subscription, handler, name, monitor: Arc::clone(&monitor), diagnostics, left_out };
         self.endpoints.push(Box::new(subscribed));
         Ok(monitor)
     }

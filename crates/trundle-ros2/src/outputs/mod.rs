@@ -2,21 +2,22 @@
 
 pub mod costmap;
 mod frames;
+mod node_guard;
 mod published_map;
 mod publishers;
 mod robot_outputs;
+mod run_frames;
 
 pub use frames::FrameNames;
 pub use published_map::PublishedMap;
 pub use publishers::{OutputTopic, RobotTopics};
 pub use robot_outputs::{OutputSources, RobotOutputs};
+pub use run_frames::RunFrames;
 
 /// Topics that a robot publishes.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct OutputSettings {
-    /// Names of frames.
-    pub frames: FrameNames,
     /// Name of the node.
     pub node: String,
     /// Whether the body is trundle's own: odometry, its transform and the battery are published too.
@@ -38,7 +39,6 @@ impl OutputSettings {
         has_own_body: bool,
     ) -> Self {
         Self {
-            frames: options.frames.clone(),
             node: options.node.names.node.clone(),
             has_own_body,
             publishes_scan: true,

@@ -1,10 +1,10 @@
 //! The robot's state as messages, from a separate thread: the robot never waits for it.
 
+use super::node_guard::NodeGuard;
 use super::published_map::PublishedMap;
 use super::publishers::RobotTopics;
-use super::{OutputSettings, costmap};
+use super::{OutputSettings, RunFrames, costmap};
 use crate::Ros2Error;
-use crate::body::OdometryReader;
 use crate::clock::RosClock;
 use crate::convert::odometry::OdometryFrames;
 use crate::convert::{battery, diagnostics, grid, odometry, path, pose, scan, stamp, transform};
@@ -18,7 +18,6 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use trundle_app::operator::{Operator, RunView};
 use trundle_core::{OccupancyGrid, Pose2, Pose3, Stamp};
-use trundle_runtime::OperatorCommand;
 
 /// Period of transforms and odometry. Source: the robot's control rate, 50 Hz.
 const POSE_PERIOD: Duration = Duration::from_millis(20);
@@ -38,10 +37,8 @@ pub struct OutputSources {
     pub clock: RosClock,
     /// Conditions of the node's topics.
     pub diagnostics: Diagnostics,
-    /// The odometry that the body publishes itself; `None`: the robot's own is published.
-    pub body_odometry: Option<OdometryReader>,
-    /// Whether the transform from the odometry's frame to the base is published here.
-    pub publishes_odom_transform: bool,
+    /// The frames. The robot's own odometry is published if the body publishes none.
+    pub frames: RunFrames,
     /// `base_from_camera`, for the static transforms.
     pub base_from_camera: Pose3,
     /// Receives each map that is published as a whole.
@@ -106,12 +103,17 @@ struct OutputLoop {
     plan: Option<usize>,
     scan: Option<Stamp>,
     has_static: bool,
-    is_dead: bool,
+    /// Whether the transform from the odometry's frame to the base is published here.
+    owns_odom_transform: bool,
+    guard: NodeGuard,
 }
 
 impl OutputLoop {
     fn new(topics: RobotTopics, settings: OutputSettings, sources: OutputSources) -> Self {
         let now = Instant::now();
+        let (node, operator) = (Arc::clone(&sources.node), sources.operator.clone());
+        let guard = NodeGuard::new(node, operator, sources.diagnostics.clone());
+        let owns_odom_transform = !sources.frames.has_foreign_odom_transform();
         Self {
             topics,
             settings,
@@ -125,12 +127,13 @@ impl OutputLoop {
             plan: None,
             scan: None,
             has_static: false,
-            is_dead: false,
+            owns_odom_transform,
+            guard,
         }
     }
 
     fn step(&mut self, now: Instant) {
-        self.stop_robot_without_node();
+        self.guard.check();
         let view = self.sources.operator.view();
         let (is_slow, is_slowest) = (now >= self.slow_due, now >= self.slowest_due);
         if let Some(view) = &view {
@@ -149,36 +152,38 @@ impl OutputLoop {
         }
         if is_slowest {
             self.slowest_due = now + SLOWEST_PERIOD;
+            self.yield_odom_transform();
             self.publish_diagnostics(view.as_deref());
             view.iter().for_each(|view| self.publish_battery(view));
         }
     }
 
-    /// Stops the robot if the node has crashed, because no goal can be sent or cancelled.
-    fn stop_robot_without_node(&mut self) {
-        if self.is_dead {
+    /// Leaves the transform from the odometry's frame to the base to another node that has begun to publish it.
+    fn yield_odom_transform(&mut self) {
+        let frames = &self.sources.frames;
+        if !self.owns_odom_transform || !frames.has_foreign_odom_transform() {
             return;
         }
-        let Some(death) = self.sources.node.death() else { return };
-        self.is_dead = true;
-        tracing::error!("{death}; the robot stops");
-        if let Err(error) = self.sources.operator.send(OperatorCommand::Pause) {
-            tracing::error!("the robot was not stopped: {error}");
-        }
+        self.owns_odom_transform = false;
+        let message = format!(
+            "another node has begun to publish {} -> {}, as trundle did: trundle leaves it to that node from now on",
+            frames.odom(),
+            frames.names.base
+        );
+        self.sources.diagnostics.warn("/tf", message);
     }
 
     /// Transforms, and odometry if the body does not publish its own.
     fn publish_poses(&self, view: &RunView) {
-        let (clock, frames) = (&self.sources.clock, &self.settings.frames);
-        let Some(odom_from_base) = self.odom_from_base(view) else { return };
+        let (clock, frames) = (&self.sources.clock, &self.sources.frames.names);
+        let Some(odom_from_base) = self.sources.frames.odom_from_base(view) else { return };
         let at = clock.to_ros(view.estimate.stamp);
         let map_from_odom = view.estimate.pose * odom_from_base.inverse();
-        let odom = self.sources.body_odometry.as_ref().and_then(OdometryReader::frame);
-        let odom = odom.as_deref().unwrap_or(&frames.odom);
+        let odom = &*self.sources.frames.odom();
         let held = at.after(TRANSFORM_TOLERANCE_S);
         let mut transforms: Vec<TransformStamped> =
             vec![transform::planar_to_ros(&map_from_odom, held, &frames.map, odom)];
-        if self.sources.publishes_odom_transform {
+        if self.owns_odom_transform {
             transforms.push(transform::planar_to_ros(&odom_from_base, at, odom, &frames.base));
         }
         if let (Some(topic), Some(own)) = (&self.topics.odom, &view.odometry) {
@@ -187,20 +192,12 @@ impl OutputLoop {
         self.topics.tf.publish(TFMessage { transforms });
     }
 
-    /// The odometry to which the transform of the map refers, at the time of the estimate.
-    fn odom_from_base(&self, view: &RunView) -> Option<Pose2> {
-        match &self.sources.body_odometry {
-            Some(reader) => reader.at(view.estimate.stamp).map(|odometry| odometry.pose),
-            None => view.odometry.map(|odometry| odometry.pose),
-        }
-    }
-
     /// Base to camera and scan, once: late subscribers receive them too.
     fn publish_static(&mut self, view: &RunView) {
         if self.has_static {
             return;
         }
-        let frames = &self.settings.frames;
+        let frames = &self.sources.frames.names;
         let at = self.sources.clock.to_ros(view.stamp);
         let mut transforms = Vec::new();
         if self.settings.has_own_body {
@@ -228,7 +225,7 @@ impl OutputLoop {
             return;
         }
         let at = self.sources.clock.to_ros(scan.stamp());
-        topic.publish(scan::to_ros(scan, at, &self.settings.frames.scan, self.settings.scan_range_m));
+        topic.publish(scan::to_ros(scan, at, &self.sources.frames.names.scan, self.settings.scan_range_m));
     }
 
     fn publish_plan(&mut self, view: &RunView) {
@@ -241,7 +238,7 @@ impl OutputLoop {
         let points = view.plan.iter().flat_map(|plan| plan.trajectory.points());
         let poses: Vec<Pose2> = points.map(|point| point.pose).collect();
         let at = self.sources.clock.to_ros(view.stamp);
-        self.topics.plan.publish(path::to_ros(&poses, at, &self.settings.frames.map));
+        self.topics.plan.publish(path::to_ros(&poses, at, &self.sources.frames.names.map));
     }
 
     /// Whether another map replaced the published one: the new map is published as a whole, without updates.
@@ -258,7 +255,7 @@ impl OutputLoop {
     /// The whole map if it changed and a second has passed, else the changes.
     fn publish_map(&mut self, view: &RunView, is_slowest: bool) {
         let Some(map) = &view.map else { return };
-        let frame = &self.settings.frames.map;
+        let frame = &self.sources.frames.names.map;
         let at = self.sources.clock.to_ros(view.stamp);
         let has_changed = self.map.as_ref().is_none_or(|(revision, _)| *revision != map.revision);
         let is_same_place = self.map.as_ref().is_some_and(|(_, old)| old.geometry() == map.grid.geometry());
@@ -295,14 +292,14 @@ impl OutputLoop {
     fn publish_pose(&self, view: &RunView) {
         let at = self.sources.clock.to_ros(view.estimate.stamp);
         let pose = pose::with_covariance(&view.estimate.pose, &view.estimate.covariance);
-        let header = stamp::header(at, &self.settings.frames.map);
+        let header = stamp::header(at, &self.sources.frames.names.map);
         self.topics.amcl_pose.publish(PoseWithCovarianceStamped { header, pose });
     }
 
     fn publish_battery(&self, view: &RunView) {
         if let (Some(topic), Some(own)) = (&self.topics.battery, &view.battery) {
             let at = self.sources.clock.to_ros(view.stamp);
-            topic.publish(battery::to_ros(own, at, &self.settings.frames.base));
+            topic.publish(battery::to_ros(own, at, &self.sources.frames.names.base));
         }
     }
 

@@ -88,7 +88,7 @@ impl BodyServer {
         Ok(Self {
             odom: OutputTopic::new(node, "odom", &qos::reliable(10))?,
             truth: OutputTopic::new(node, "ground_truth", &qos::reliable(10))?,
-            scan: OutputTopic::new(node, "scan", &qos::sensor(5))?,
+            scan: OutputTopic::new(node, "scan", &qos::reliable(5))?,
             battery: OutputTopic::new(node, "battery_state", &qos::reliable(1))?,
             tf: OutputTopic::new(node, "/tf", &qos::reliable(100))?,
             tf_static: OutputTopic::new(node, "/tf_static", &qos::latched())?,

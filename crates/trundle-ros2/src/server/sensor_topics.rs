@@ -31,7 +31,7 @@ impl SensorTopics {
         drive: DifferentialDrive,
     ) -> Result<Self, Ros2Error> {
         Ok(Self {
-            imu: OutputTopic::new(node, "imu", &qos::sensor(10))?,
+            imu: OutputTopic::new(node, "imu", &qos::reliable(10))?,
             joints: OutputTopic::new(node, "joint_states", &qos::reliable(10))?,
             images: ImagePublisher::start(node, settings, camera)?,
             wheels: Wheels::default(),

@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::new_without_default, reason = "helpers of tests")]
 
 mod actions;
+mod body_server;
+mod robot;
 mod sensors;
 mod topics;
 

@@ -29,7 +29,7 @@ impl<M: Clone + Send + 'static> Newest<M> {
 }
 
 #[test]
-fn the_sensors_of_a_body_are_published_and_images_from_the_first_reader_on() {
+fn the_sensors_of_a_body_reach_reliable_readers_and_images_flow_from_the_first_reader_on() {
     let domain = Domain::new();
     let (mut sender, mut receiver) = (domain.node("sender"), domain.node("receiver"));
     let settings = ServerSettings::new(FrameNames::default(), true);
@@ -40,7 +40,7 @@ fn the_sensors_of_a_body_are_published_and_images_from_the_first_reader_on() {
     let (joints, on_joints) = Newest::<JointState>::new();
     let (info, on_info) = Newest::<CameraInfoMessage>::new();
     let (depth, on_depth) = Newest::<CompressedImage>::new();
-    receiver.subscribe("imu", &qos::sensor(5), None, on_imu).unwrap();
+    receiver.subscribe("imu", &qos::reliable(5), None, on_imu).unwrap();
     receiver.subscribe("joint_states", &qos::reliable(5), None, on_joints).unwrap();
     receiver.subscribe("camera/color/camera_info", &qos::reliable(5), None, on_info).unwrap();
     let depth_topic = "camera/depth/image_raw/compressedDepth";

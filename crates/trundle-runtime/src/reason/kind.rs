@@ -36,6 +36,8 @@ pub enum ReasonKind {
     BatteryEmpty,
     /// A person paused the robot.
     Paused,
+    /// The link by which goals come has died.
+    GoalLinkLost,
     /// The robot stops before the next plan.
     StoppingToReplan,
     /// A dynamic obstacle blocks the path.
@@ -137,6 +139,7 @@ impl ReasonKind {
             MotionHold::DeviceLost(_) => Self::DeviceLost,
             MotionHold::BatteryEmpty => Self::BatteryEmpty,
             MotionHold::Paused => Self::Paused,
+            MotionHold::GoalLinkLost => Self::GoalLinkLost,
             _ => Self::Unknown,
         }
     }

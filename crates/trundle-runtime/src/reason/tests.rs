@@ -33,6 +33,11 @@ fn samples() -> Vec<(Reason, ReasonKind, &'static str)> {
         (Reason::Safety(StopReason::NotFinite), ReasonKind::CommandInvalid, "not a number"),
         (Reason::Safety(StopReason::Held(MotionHold::WheelDrop)), ReasonKind::WheelDrop, "wheel"),
         (Reason::Safety(StopReason::Held(MotionHold::Paused)), ReasonKind::Paused, "paused"),
+        (
+            Reason::Safety(StopReason::Held(MotionHold::GoalLinkLost)),
+            ReasonKind::GoalLinkLost,
+            "start the program anew",
+        ),
         (Reason::StoppingToReplan, ReasonKind::StoppingToReplan, "plan again"),
         (Reason::MovingObstacle, ReasonKind::MovingObstacle, "moving obstacle blocks"),
         (Reason::PathOutOfView, ReasonKind::PathOutOfView, "leaves the camera's view"),

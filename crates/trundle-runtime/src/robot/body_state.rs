@@ -18,6 +18,7 @@ pub(super) struct BodyState {
     station_light: DockInfrared,
     lost: Vec<Device>,
     is_paused: bool,
+    is_goal_link_lost: bool,
 }
 
 impl BodyState {
@@ -39,6 +40,11 @@ impl BodyState {
     /// Sets whether a person has paused the robot.
     pub(super) fn set_paused(&mut self, is_paused: bool) {
         self.is_paused = is_paused;
+    }
+
+    /// Notes that the link by which goals come has died: the hold lasts until the program is started anew.
+    pub(super) fn lose_goal_link(&mut self) {
+        self.is_goal_link_lost = true;
     }
 
     /// The battery; `None` before the body's first report.
@@ -64,11 +70,12 @@ impl BodyState {
     /// The first condition under which no wheel may turn; `None` if the robot may drive. The camera counts for every range source, since
     /// the visual map needs it.
     pub(super) fn hold(&self, range_source: RangeSource) -> Option<MotionHold> {
+        let link = self.is_goal_link_lost.then_some(MotionHold::GoalLinkLost);
         let paused = self.is_paused.then_some(MotionHold::Paused);
-        self.hold_besides_pause(range_source).or(paused)
+        self.hold_besides_pause(range_source).or(link).or(paused)
     }
 
-    /// The first condition besides a pause, for a robot that a person drives by hand.
+    /// The first condition of the body itself, for a robot that a person drives by hand.
     pub(super) fn hold_besides_pause(&self, range_source: RangeSource) -> Option<MotionHold> {
         let needed = |device: &Device| *device != Device::Laser || range_source == RangeSource::Laser;
         let lost = self.lost.iter().copied().find(needed).map(MotionHold::DeviceLost);

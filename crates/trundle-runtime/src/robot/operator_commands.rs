@@ -38,6 +38,7 @@ impl Robot {
                 self.pause(true, now, &mut report);
                 self.steering.teleop.drive(twist, now);
             }
+            OperatorCommand::GoalLinkLost => self.lose_goal_link(now, &mut report),
         }
         self.complete(&mut report);
         Ok(report)
@@ -92,6 +93,12 @@ impl Robot {
         self.steering.teleop.release();
         let before = self.latest.body.hold(self.range_sensor.source);
         self.latest.body.set_paused(is_paused);
+        self.on_hold(before, now, report);
+    }
+
+    fn lose_goal_link(&mut self, now: Stamp, report: &mut StepReport) {
+        let before = self.latest.body.hold(self.range_sensor.source);
+        self.latest.body.lose_goal_link();
         self.on_hold(before, now, report);
     }
 

@@ -140,6 +140,18 @@ fn an_operators_twist_pauses_the_mission_until_it_is_continued() {
 }
 
 #[test]
+fn a_lost_link_for_goals_holds_the_robot_with_its_cause_until_the_program_is_started_anew() {
+    let mut robot = robot(GOAL);
+    stand(&mut robot, (0.0, 0.5));
+    robot.execute(OperatorCommand::GoalLinkLost).unwrap();
+    assert_eq!(robot.hold(), Some(MotionHold::GoalLinkLost));
+    robot.execute(OperatorCommand::Pause).unwrap();
+    robot.execute(OperatorCommand::Continue).unwrap();
+    assert_eq!(robot.hold(), Some(MotionHold::GoalLinkLost), "a continuation does not bring the link back");
+    assert!(stand(&mut robot, (0.5, 1.5)).iter().all(|twist| *twist == Twist2::ZERO));
+}
+
+#[test]
 fn annotations_are_replaced_whole() {
     let mut robot = robot(GOAL);
     let named: MapAnnotations = serde_json::from_str(

@@ -10,7 +10,7 @@ use crate::navigation::error_codes::of_reason;
 use crate::navigation::goal_outcome::NavigationOutcome;
 use crate::navigation::goal_pose::{GoalPoseError, in_map};
 use crate::navigation::navigation_action::{GoalContext, NavigationAction, NavigationRefusal, pose_error};
-use crate::outputs::FrameNames;
+use crate::outputs::RunFrames;
 use trundle_app::RunSetup;
 use trundle_app::operator::RunView;
 use trundle_core::Pose2;
@@ -53,7 +53,7 @@ impl NavigationAction for FollowPath {
         Ok(passing(&resampled(&poses), PASSED_M))
     }
 
-    fn feedback(_goal: &Goal, view: &RunView, _progress: &GoalProgress, _frames: &FrameNames) -> Feedback {
+    fn feedback(_goal: &Goal, view: &RunView, _progress: &GoalProgress, _frames: &RunFrames) -> Feedback {
         let ahead: Vec<Pose2> = view.mission.left.iter().filter_map(RunSetup::goal_of).collect();
         let (to_next, _) = left(view, ahead.first().unwrap_or(&view.estimate.pose));
         let rest: f64 = ahead.windows(2).map(|pair| pair[0].distance(&pair[1])).sum();
@@ -70,7 +70,7 @@ impl NavigationAction for FollowPath {
 fn pose_in_map(
     goal: &Goal,
     pose: &PoseStamped,
-    frames: &FrameNames,
+    frames: &RunFrames,
     view: Option<&RunView>,
 ) -> Result<Pose2, GoalPoseError> {
     if !pose.header.frame_id.is_empty() {
@@ -116,6 +116,7 @@ fn code_of(reason: &Reason) -> u16 {
 mod tests {
     use super::*;
     use crate::convert::path;
+    use crate::outputs::FrameNames;
     use trundle_core::Stamp;
     use trundle_runtime::NoPath;
 
@@ -145,7 +146,7 @@ mod tests {
 
     #[test]
     fn the_last_goal_is_the_end_of_the_path_and_an_empty_path_fails() {
-        let frames = FrameNames::default();
+        let frames = RunFrames::of_own_odometry(FrameNames::default());
         let context = GoalContext { frames: &frames, view: None };
         let own = [Pose2::new(0.0, 0.0, 0.0), Pose2::new(1.0, 2.0, 0.5)];
         let mut goal = Goal { path: path::to_ros(&own, Stamp::default(), "map"), ..Goal::default() };

@@ -11,14 +11,14 @@ use crate::convert::{pose, stamp};
 use crate::generated::builtin_interfaces::Duration;
 use crate::generated::geometry_msgs::PoseStamped;
 use crate::navigation::NavigationRefusal;
-use crate::outputs::FrameNames;
+use crate::outputs::RunFrames;
 use trundle_app::operator::RunView;
 use trundle_core::Pose2;
 use trundle_runtime::{GoalOptions, Task, TaskGoal};
 
 /// The robot's pose as feedback.
-fn current_pose(view: &RunView, frames: &FrameNames) -> PoseStamped {
-    pose::stamped(&view.estimate.pose, view.estimate.stamp, &frames.map)
+fn current_pose(view: &RunView, frames: &RunFrames) -> PoseStamped {
+    pose::stamped(&view.estimate.pose, view.estimate.stamp, &frames.names.map)
 }
 
 /// Seconds as a duration; 0 if they are not known.

@@ -11,7 +11,7 @@ use crate::navigation::error_codes::of_reason;
 use crate::navigation::goal_outcome::NavigationOutcome;
 use crate::navigation::goal_pose::in_map;
 use crate::navigation::navigation_action::{GoalContext, NavigationAction, NavigationRefusal, pose_error};
-use crate::outputs::FrameNames;
+use crate::outputs::RunFrames;
 use trundle_app::operator::RunView;
 use trundle_runtime::{Task, TaskEnd};
 
@@ -37,7 +37,7 @@ impl NavigationAction for NavigateThroughPoses {
         Ok(passing(&poses?, PASSED_M))
     }
 
-    fn feedback(goal: &Goal, view: &RunView, progress: &GoalProgress, frames: &FrameNames) -> Feedback {
+    fn feedback(goal: &Goal, view: &RunView, progress: &GoalProgress, frames: &RunFrames) -> Feedback {
         let poses = &goal.poses.goals;
         let done = view.mission.ended.len().min(poses.len());
         let next = poses.get(done).and_then(|pose| in_map(pose, frames, Some(view)).ok());
@@ -95,6 +95,7 @@ mod tests {
     use super::*;
     use crate::convert::pose;
     use crate::generated::nav_msgs::Goals;
+    use crate::outputs::FrameNames;
     use trundle_core::{Pose2, Stamp};
     use trundle_runtime::{NoPath, Reason};
 
@@ -106,7 +107,7 @@ mod tests {
 
     #[test]
     fn a_named_behavior_tree_fails() {
-        let frames = FrameNames::default();
+        let frames = RunFrames::of_own_odometry(FrameNames::default());
         let context = GoalContext { frames: &frames, view: None };
         assert_eq!(NavigateThroughPoses::tasks(&goal(2, ""), &context).unwrap().len(), 2);
         let Err(NavigationRefusal::Failed(result)) =

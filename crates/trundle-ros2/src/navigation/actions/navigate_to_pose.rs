@@ -10,7 +10,7 @@ use crate::navigation::error_codes::of_reason;
 use crate::navigation::goal_outcome::NavigationOutcome;
 use crate::navigation::goal_pose::in_map;
 use crate::navigation::navigation_action::{GoalContext, NavigationAction, NavigationRefusal, pose_error};
-use crate::outputs::FrameNames;
+use crate::outputs::RunFrames;
 use trundle_app::operator::RunView;
 use trundle_runtime::Task;
 
@@ -26,7 +26,7 @@ impl NavigationAction for NavigateToPose {
         Ok(vec![Task::go(pose)])
     }
 
-    fn feedback(goal: &Goal, view: &RunView, progress: &GoalProgress, frames: &FrameNames) -> Feedback {
+    fn feedback(goal: &Goal, view: &RunView, progress: &GoalProgress, frames: &RunFrames) -> Feedback {
         let target = in_map(&goal.pose, frames, Some(view)).unwrap_or(view.estimate.pose);
         let (distance_remaining, estimated_time_remaining) = left(view, &target);
         Feedback {
@@ -48,11 +48,12 @@ impl NavigationAction for NavigateToPose {
 mod tests {
     use super::*;
     use crate::convert::pose;
+    use crate::outputs::FrameNames;
     use trundle_core::{Pose2, Stamp};
 
     #[test]
     fn wrong_frames_fail_and_broken_numbers_are_refused() {
-        let frames = FrameNames::default();
+        let frames = RunFrames::of_own_odometry(FrameNames::default());
         let context = GoalContext { frames: &frames, view: None };
         let goal = |x, frame: &str| Goal {
             pose: pose::stamped(&Pose2::new(x, 0.0, 1.0), Stamp::default(), frame),

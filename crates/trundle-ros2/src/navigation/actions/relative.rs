@@ -8,19 +8,37 @@ use crate::generated::nav2_msgs::{
     BackUp, BackUpFeedback, BackUpGoal, BackUpResult, DriveOnHeading, DriveOnHeadingFeedback,
     DriveOnHeadingGoal, DriveOnHeadingResult, Spin, SpinFeedback, SpinGoal, SpinResult,
 };
-use crate::navigation::active_goal::GoalProgress;
+use crate::navigation::active_goal::{GoalProgress, TimeLimit};
+use crate::navigation::error_codes::MotionCodes;
 use crate::navigation::goal_outcome::NavigationOutcome;
 use crate::navigation::navigation_action::{GoalContext, NavigationAction, NavigationRefusal};
-use crate::outputs::FrameNames;
-use std::time::Duration;
+use crate::outputs::RunFrames;
 use trundle_app::operator::RunView;
 use trundle_core::wrap_angle;
-use trundle_runtime::Task;
+use trundle_runtime::{Reason, Task};
+
+/// Codes of `Spin`.
+const SPIN_CODES: MotionCodes = MotionCodes {
+    collision_ahead: SpinResult::COLLISION_AHEAD,
+    tf_error: SpinResult::TF_ERROR,
+    unknown: SpinResult::UNKNOWN,
+};
+/// Codes of `BackUp`.
+const BACK_UP_CODES: MotionCodes = MotionCodes {
+    collision_ahead: BackUpResult::COLLISION_AHEAD,
+    tf_error: BackUpResult::TF_ERROR,
+    unknown: BackUpResult::UNKNOWN,
+};
+/// Codes of `DriveOnHeading`.
+const HEADING_CODES: MotionCodes = MotionCodes {
+    collision_ahead: DriveOnHeadingResult::COLLISION_AHEAD,
+    tf_error: DriveOnHeadingResult::TF_ERROR,
+    unknown: DriveOnHeadingResult::UNKNOWN,
+};
 
 /// The time that a goal allows; `None` for 0, as in Nav2.
-fn allowance(time: &Allowance) -> Option<Duration> {
-    let seconds = stamp::seconds(time);
-    (seconds > 0.0).then(|| Duration::from_secs_f64(seconds))
+fn allowance(time: &Allowance) -> Result<Option<TimeLimit>, String> {
+    TimeLimit::of_seconds("time_allowance", stamp::seconds(time))
 }
 
 /// A straight drive, or why its numbers are wrong.
@@ -51,7 +69,7 @@ impl NavigationAction for Spin {
         Ok(vec![Task::Turn { angle: f64::from(goal.target_yaw) }])
     }
 
-    fn time_limit(goal: &SpinGoal) -> Option<Duration> {
+    fn time_limit(goal: &SpinGoal) -> Result<Option<TimeLimit>, String> {
         allowance(&goal.time_allowance)
     }
 
@@ -59,7 +77,7 @@ impl NavigationAction for Spin {
         _goal: &SpinGoal,
         view: &RunView,
         progress: &GoalProgress,
-        _frames: &FrameNames,
+        _frames: &RunFrames,
     ) -> SpinFeedback {
         SpinFeedback {
             angular_distance_traveled: wrap_angle(view.estimate.pose.theta - progress.start.theta) as f32,
@@ -67,8 +85,8 @@ impl NavigationAction for Spin {
     }
 
     fn result(_goal: &SpinGoal, outcome: &NavigationOutcome, time_s: f64) -> SpinResult {
-        let error_code =
-            outcome.code(SpinResult::TIMEOUT, |_| SpinResult::COLLISION_AHEAD, SpinResult::UNKNOWN);
+        let code = |reason: &Reason| SPIN_CODES.of_reason(reason);
+        let error_code = outcome.code(SpinResult::TIMEOUT, code, SpinResult::UNKNOWN);
         SpinResult { total_elapsed_time: duration(time_s), error_code, error_msg: outcome.message.clone() }
     }
 }
@@ -86,7 +104,7 @@ impl NavigationAction for BackUp {
         straight(&goal.target, goal.speed, -1.0).map_err(|message| NavigationRefusal::Failed(failed(message)))
     }
 
-    fn time_limit(goal: &BackUpGoal) -> Option<Duration> {
+    fn time_limit(goal: &BackUpGoal) -> Result<Option<TimeLimit>, String> {
         allowance(&goal.time_allowance)
     }
 
@@ -94,14 +112,14 @@ impl NavigationAction for BackUp {
         _goal: &BackUpGoal,
         view: &RunView,
         progress: &GoalProgress,
-        _frames: &FrameNames,
+        _frames: &RunFrames,
     ) -> BackUpFeedback {
         BackUpFeedback { distance_traveled: view.estimate.pose.distance(&progress.start) as f32 }
     }
 
     fn result(_goal: &BackUpGoal, outcome: &NavigationOutcome, time_s: f64) -> BackUpResult {
-        let error_code =
-            outcome.code(BackUpResult::TIMEOUT, |_| BackUpResult::COLLISION_AHEAD, BackUpResult::UNKNOWN);
+        let code = |reason: &Reason| BACK_UP_CODES.of_reason(reason);
+        let error_code = outcome.code(BackUpResult::TIMEOUT, code, BackUpResult::UNKNOWN);
         BackUpResult { total_elapsed_time: duration(time_s), error_code, error_msg: outcome.message.clone() }
     }
 }
@@ -126,7 +144,7 @@ impl NavigationAction for DriveOnHeading {
             .map_err(|message| NavigationRefusal::Failed(failed(message)))
     }
 
-    fn time_limit(goal: &DriveOnHeadingGoal) -> Option<Duration> {
+    fn time_limit(goal: &DriveOnHeadingGoal) -> Result<Option<TimeLimit>, String> {
         allowance(&goal.time_allowance)
     }
 
@@ -134,14 +152,14 @@ impl NavigationAction for DriveOnHeading {
         _goal: &DriveOnHeadingGoal,
         view: &RunView,
         progress: &GoalProgress,
-        _frames: &FrameNames,
+        _frames: &RunFrames,
     ) -> DriveOnHeadingFeedback {
         DriveOnHeadingFeedback { distance_traveled: view.estimate.pose.distance(&progress.start) as f32 }
     }
 
     fn result(_goal: &DriveOnHeadingGoal, outcome: &NavigationOutcome, time_s: f64) -> DriveOnHeadingResult {
-        let blocked = |_: &trundle_runtime::Reason| DriveOnHeadingResult::COLLISION_AHEAD;
-        let error_code = outcome.code(DriveOnHeadingResult::TIMEOUT, blocked, DriveOnHeadingResult::UNKNOWN);
+        let code = |reason: &Reason| HEADING_CODES.of_reason(reason);
+        let error_code = outcome.code(DriveOnHeadingResult::TIMEOUT, code, DriveOnHeadingResult::UNKNOWN);
         DriveOnHeadingResult {
             total_elapsed_time: duration(time_s),
             error_code,
@@ -153,10 +171,11 @@ impl NavigationAction for DriveOnHeading {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outputs::FrameNames;
 
     #[test]
     fn backing_up_goes_back_and_broken_targets_fail_with_nav2s_code() {
-        let frames = FrameNames::default();
+        let frames = RunFrames::of_own_odometry(FrameNames::default());
         let context = GoalContext { frames: &frames, view: None };
         let goal =
             |x, y, speed| BackUpGoal { target: Point { x, y, z: 0.0 }, speed, ..BackUpGoal::default() };

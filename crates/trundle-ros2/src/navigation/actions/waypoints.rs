@@ -9,7 +9,7 @@ use crate::navigation::error_codes::of_reason;
 use crate::navigation::goal_outcome::NavigationOutcome;
 use crate::navigation::goal_pose::in_map;
 use crate::navigation::navigation_action::{GoalContext, NavigationAction, NavigationRefusal, pose_error};
-use crate::outputs::FrameNames;
+use crate::outputs::RunFrames;
 use trundle_app::operator::RunView;
 use trundle_runtime::Task;
 
@@ -38,7 +38,7 @@ impl NavigationAction for FollowWaypoints {
         Ok(once.iter().cycle().take(count).skip(goal.goal_index as usize).copied().collect())
     }
 
-    fn feedback(goal: &Goal, view: &RunView, _progress: &GoalProgress, _frames: &FrameNames) -> Feedback {
+    fn feedback(goal: &Goal, view: &RunView, _progress: &GoalProgress, _frames: &RunFrames) -> Feedback {
         let place = goal.goal_index as usize + view.mission.ended.len();
         Feedback { current_waypoint: (place % goal.poses.len().max(1)) as u32 }
     }
