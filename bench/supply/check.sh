@@ -44,7 +44,7 @@ if ! command -v python3 >/dev/null || { [ ! -d "$sbom_tools/fastjsonschema" ] &&
     ! python3 -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes --target "$sbom_tools" \
         -r bench/supply/requirements-sbom.txt >"$log" 2>&1; }; then
     echo "skipped: the list of parts (the schema of CycloneDX cannot be had: python3 or PyPI is missing)"
-elif cargo xtask sbom &&
+elif ${XTASK:-cargo xtask} sbom &&
     cargo tree --locked --offline --edges normal --prefix none --package trundle-cli --features ros2,mqtt,foxglove,tls |
     PYTHONPATH=$sbom_tools python3 bench/supply/check_sbom.py target/sbom/trundle-cli.cdx.json "$sbom_tools/cyclonedx/schema/_res"; then
     echo "ok   list of parts of the program"

@@ -10,5 +10,5 @@ if ! cargo deb --version >/dev/null 2>&1 && [ ! -x "$tools/bin/cargo-deb" ]; the
     cargo install --locked --quiet --root "$tools" --version =3.8.0 cargo-deb >/dev/null 2>&1 || true
 fi
 PATH=$PATH:$tools/bin
-cargo xtask deb --profile release
-cargo xtask deb --profile release --arm64
+${XTASK:-cargo xtask} deb --profile release
+${XTASK:-cargo xtask} deb --profile release --arm64

@@ -11,6 +11,16 @@ const TOOL: &str = "book-tools/bin/mdbook";
 /// The script that searches the book.
 const SEARCH: &str = "bench/book/search.mjs";
 
+/// The command that replaces links, in the environment of mdbook: it stands in `book.toml` for a build by hand. Source: mdbook, environment
+/// variables.
+const LINKS_COMMAND: &str = "MDBOOK_PREPROCESSOR__REPOSITORY_LINKS__COMMAND";
+
+/// This program, which needs no further build.
+fn own_command() -> Result<String, String> {
+    let own = std::env::current_exe().map_err(|e| format!("the path of this program is unknown: {e}"))?;
+    Ok(format!("'{}' book-links", own.display()))
+}
+
 /// Writes the reference of every crate, beside the book; warnings are errors.
 pub fn references(root: &Path) -> Verdict {
     program::cargo(root, &["doc", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-Dwarnings")])
@@ -28,7 +38,9 @@ pub fn run(root: &Path) -> Verdict {
     if !references(root)? {
         return Ok(false);
     }
-    if !ends_well(Command::new(&mdbook).args(["build", "--dest-dir"]).arg(&folder).current_dir(root))? {
+    let mut build = Command::new(&mdbook);
+    build.args(["build", "--dest-dir"]).arg(&folder).current_dir(root).env(LINKS_COMMAND, own_command()?);
+    if !ends_well(&mut build)? {
         return Ok(false);
     }
     let broken = html_links::broken(&folder)?;
