@@ -1,23 +1,37 @@
 //! `trundle run` on a real wire: the simulator is a Kobuki at a pseudo terminal and a camera at a FIFO, in another process.
 
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Longest time of one run \[s\].
-const RUN_LIMIT_S: &str = "60";
+const RUN_LIMIT_S: &str = "120";
+
+/// Robots run in real time: one at a time, so that they do not wait for each other.
+static TURN: Mutex<()> = Mutex::new(());
 
 /// A simulated robot in a separate process.
 struct EmulatedRobot {
     process: Child,
     folder: PathBuf,
+    _turn: MutexGuard<'static, ()>,
 }
 
 impl EmulatedRobot {
     fn start(folder: &Path) -> Self {
+        Self::start_in(folder, &["demo"])
+    }
+
+    /// A robot in the place of these arguments of `trundle sim`.
+    fn start_in(folder: &Path, place: &[&str]) -> Self {
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let (port, camera) = (folder.join("kobuki"), folder.join("camera"));
         let process = trundle()
-            .args(["sim", "demo", "--rate", "8", "--camera", "kinect-v2", "--kobuki"])
+            .arg("sim")
+            .args(place)
+            .args(["--rate", "8", "--camera", "kinect-v2", "--kobuki"])
             .arg(&port)
             .arg("--camera-stream")
             .arg(&camera)
@@ -29,7 +43,7 @@ impl EmulatedRobot {
             assert!(start.elapsed() < Duration::from_secs(60), "the emulated robot does not start");
             std::thread::sleep(Duration::from_millis(20));
         }
-        Self { process, folder: folder.to_owned() }
+        Self { process, folder: folder.to_owned(), _turn: turn }
     }
 
     fn run(&self, arguments: &[&str]) -> Command {
@@ -178,6 +192,92 @@ fn an_unplugged_robot_stops_with_that_reason_and_continues_when_it_returns() {
     let summary = robot.summary();
     assert!(summary["device_losses"]["base"].as_u64() >= Some(1), "{summary}");
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+}
+
+#[test]
+fn a_robot_docks_by_its_infrared_light_and_charges() {
+    let folder = tempfile::tempdir().unwrap();
+    // On the axis of the station, 0.7 m before it: the search and most of the survey are short.
+    let place = ["room", "--station", "2.9,0.4,180", "--start", "2.2,0.4,0"];
+    let robot = EmulatedRobot::start_in(folder.path(), &place);
+    let output = robot.run(&["--dock", "--time-limit", "240"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let summary = robot.summary();
+    let battery = |name: &str| (summary[name]["source"].as_str(), summary[name]["is_charging"].as_bool());
+    assert_eq!(battery("battery_start"), (Some("battery"), Some(false)), "{summary}");
+    assert_eq!(battery("battery_end"), (Some("charging_station"), Some(true)), "{summary}");
+    assert!(summary["station_sightings"].as_u64() > Some(0), "{summary}");
+    let truth = robot.stop();
+    // The base's middle is 0.18 m before the station.
+    assert!((first_number(&truth, "true pose from the start") - 0.52).abs() < 0.03, "{truth}");
+    assert_eq!(first_number(&truth, "true contacts"), 0.0);
+}
+
+/// Interrupts a run with `-v` on the way to its second goal; its exit code.
+fn interrupt_on_second_way(mut run: Command) -> Option<i32> {
+    let mut run = run.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let messages = BufReader::new(run.stderr.take().unwrap());
+    let mut lines = messages.lines().map(Result::unwrap);
+    assert!(lines.any(|line| line.contains("arrived -> driving")), "the run ended before its second way");
+    signal(&run, "INT");
+    lines.for_each(drop);
+    run.wait().unwrap().code()
+}
+
+#[test]
+fn an_interrupted_mission_is_resumed_without_its_done_task() {
+    let folder = tempfile::tempdir().unwrap();
+    let robot = EmulatedRobot::start(folder.path());
+    let (mission, checkpoint) = (folder.path().join("mission.toml"), folder.path().join("robot.checkpoint"));
+    std::fs::write(&mission, "[[task]]\ngo = [0.4, 0.0, 0.0]\n\n[[task]]\ngo = [0.8, 0.0, 0.0]\n").unwrap();
+    let mut first = robot.run(&["--time-limit", RUN_LIMIT_S, "-v"]);
+    first.arg("--mission").arg(&mission).arg("--checkpoint").arg(&checkpoint);
+    assert_eq!(interrupt_on_second_way(first), Some(130));
+    let mut second = robot.run(&["--time-limit", RUN_LIMIT_S]);
+    let output = second.arg("--resume").arg(&checkpoint).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let announced = text(&output);
+    assert!(announced.contains("go to (0.80 m, 0.00 m, 0 deg)."), "{announced}");
+    assert!(!announced.contains("go to (0.40 m"), "the task that was done: {announced}");
+    let truth = robot.stop();
+    assert!((first_number(&truth, "true pose from the start") - 0.8).abs() < 0.04, "{truth}");
+    assert_eq!(first_number(&truth, "true contacts"), 0.0);
+}
+
+/// Side of a small square room \[m\], and of its cells.
+const SMALL_ROOM_M: f64 = 2.6;
+const SMALL_ROOM_CELL_M: f64 = 0.05;
+
+/// The map of a small square room with walls of two cells; the number of cells of a side.
+fn write_small_room(folder: &Path) -> usize {
+    let side = (SMALL_ROOM_M / SMALL_ROOM_CELL_M).round() as usize;
+    let is_wall = |i: usize| i < 2 || i + 2 >= side;
+    let cells = (0..side * side).map(|i| if is_wall(i / side) || is_wall(i % side) { 0 } else { 254 });
+    let picture: Vec<u8> =
+        format!("P5\n{side} {side}\n255\n").into_bytes().into_iter().chain(cells).collect();
+    std::fs::write(folder.join("room.pgm"), picture).unwrap();
+    let header = format!(
+        "image: room.pgm\nresolution: {SMALL_ROOM_CELL_M}\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    );
+    std::fs::write(folder.join("room.yaml"), header).unwrap();
+    side
+}
+
+#[test]
+fn a_small_room_is_explored_over_the_wires() {
+    let folder = tempfile::tempdir().unwrap();
+    let side = write_small_room(folder.path());
+    let room = folder.path().join("room.yaml");
+    let robot = EmulatedRobot::start_in(folder.path(), &[room.to_str().unwrap(), "--start", "1.3,1.3,0"]);
+    let output = robot.run(&["--explore", "--time-limit", RUN_LIMIT_S]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let map = std::fs::read(folder.path().join("out/map.pgm")).unwrap();
+    let free = map.iter().filter(|cell| **cell == 254).count();
+    let true_free = (side - 4) * (side - 4);
+    assert!(free * 10 > true_free * 8 && free * 10 < true_free * 11, "{free} free cells of {true_free}");
+    let truth = robot.stop();
+    assert!(first_number(&truth, "true pose from the start").abs() < 0.04, "{truth}");
+    assert_eq!(first_number(&truth, "true contacts"), 0.0);
 }
 
 /// Whether this process, and therefore each child, ignores SIGHUP.

@@ -117,7 +117,12 @@ fn assert_found(calibration: &Calibration, name: &str, truth: f64, limit: f64) {
     let found = calibration.value(name).unwrap_or_else(|| panic!("{name}: {calibration:?}"));
     let sigma = found.sigma.unwrap();
     // Read by `cargo xtask results --measure calibration`.
-    println!("error of {name}: {:.6} {}", (found.value - truth).abs(), found.unit);
+    let error = (found.value - truth).abs();
+    println!(
+        "error of {name}: {error:.6} {}\nrelative error of {name}: {:.4} %",
+        found.unit,
+        100.0 * error / truth.abs()
+    );
     assert!((found.value - truth).abs() <= limit, "{found:?}, truth {truth}");
     assert!(sigma > 0.0 && sigma <= limit, "{found:?}");
 }
