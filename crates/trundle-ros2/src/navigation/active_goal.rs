@@ -286,22 +286,22 @@ mod tests {
     use trundle_core::{Pose2, Stamp};
     use trundle_runtime::TaskRecord;
 
-    /// What a goal was told.
+    /// What a goal was called with.
     #[derive(Default)]
-    struct Told {
+    struct Reported {
         is_canceling: AtomicBool,
         feedbacks: Mutex<usize>,
         end: Mutex<Option<(GoalEnd, NavigationOutcome)>>,
     }
 
-    impl Told {
+    impl Reported {
         fn end(&self) -> Option<(GoalEnd, NavigationOutcome)> {
             self.end.lock().unwrap().clone()
         }
     }
 
     /// A goal that fails if its first task is put off.
-    struct TestGoal(Arc<Told>);
+    struct TestGoal(Arc<Reported>);
 
     impl RunningGoal for TestGoal {
         fn feedback(&mut self, _view: &RunView, _progress: &GoalProgress) {
@@ -324,11 +324,11 @@ mod tests {
         }
     }
 
-    /// A run that takes requests up when it is told to, and the goal of a client.
+    /// A run that takes requests up when a test does so, and the goal of a client.
     struct Rig {
         link: OperatorLink,
         active: ActiveGoal,
-        told: Arc<Told>,
+        reported: Arc<Reported>,
         since: Instant,
     }
 
@@ -338,12 +338,12 @@ mod tests {
             let (operator, mut link) = operator_link();
             let active = ActiveGoal::new(operator, RosClock::system(), Diagnostics::default());
             link.publish_view(view(0, &[]));
-            let told = Arc::<Told>::default();
+            let reported = Arc::<Reported>::default();
             let tasks = vec![Task::go(Pose2::new(1.0, 0.0, 0.0)), Task::Dock];
-            active.begin(tasks, Box::new(TestGoal(Arc::clone(&told))), limit).unwrap();
+            active.begin(tasks, Box::new(TestGoal(Arc::clone(&reported))), limit).unwrap();
             let request = link.next_request().unwrap();
             link.publish_view(view(request.id, &[]));
-            Self { link, active, told, since: Instant::now() }
+            Self { link, active, reported, since: Instant::now() }
         }
 
         fn tick(&self, after_s: f64) {
@@ -385,23 +385,23 @@ mod tests {
     fn a_late_cancel_waits_for_the_run_and_ends_as_canceled() {
         let mut rig = Rig::begin(None);
         rig.tick(10.0);
-        assert!(*rig.told.feedbacks.lock().unwrap() > 0 && rig.told.end().is_none());
-        rig.told.is_canceling.store(true, Ordering::Relaxed);
+        assert!(*rig.reported.feedbacks.lock().unwrap() > 0 && rig.reported.end().is_none());
+        rig.reported.is_canceling.store(true, Ordering::Relaxed);
         rig.tick(10.1);
         rig.tick(10.12);
-        assert_eq!(rig.told.end(), None, "the run has not taken the request up");
+        assert_eq!(rig.reported.end(), None, "the run has not taken the request up");
         rig.take_cancel();
         rig.tick(10.14);
-        assert_eq!(rig.told.end(), Some((GoalEnd::Canceled, NavigationOutcome::default())));
+        assert_eq!(rig.reported.end(), Some((GoalEnd::Canceled, NavigationOutcome::default())));
     }
 
     #[test]
     fn a_run_that_does_not_answer_ends_the_goal_as_asked() {
         let rig = Rig::begin(None);
-        rig.told.is_canceling.store(true, Ordering::Relaxed);
+        rig.reported.is_canceling.store(true, Ordering::Relaxed);
         rig.tick(10.0);
         rig.tick(15.1);
-        assert_eq!(rig.told.end().unwrap().0, GoalEnd::Canceled);
+        assert_eq!(rig.reported.end().unwrap().0, GoalEnd::Canceled);
     }
 
     #[test]
@@ -412,7 +412,7 @@ mod tests {
         rig.tick(1.0);
         rig.take_cancel();
         rig.tick(1.1);
-        let (end, outcome) = rig.told.end().unwrap();
+        let (end, outcome) = rig.reported.end().unwrap();
         assert_eq!((end, outcome.reason), (GoalEnd::Aborted, Some(Reason::MovingObstacle)));
         assert_eq!(outcome.ended, [(0, put_off)]);
     }
@@ -424,11 +424,11 @@ mod tests {
         rig.show_ended(&[TaskEnd::Done]);
         rig.tick(1.0);
         rig.tick(100.0);
-        assert!(rig.link.next_request().is_none() && rig.told.end().is_none(), "docking has no limit");
+        assert!(rig.link.next_request().is_none() && rig.reported.end().is_none(), "docking has no limit");
         let mut late = Rig::begin(Some(limit));
         late.tick(5.1);
         late.take_cancel();
         late.tick(5.2);
-        assert!(late.told.end().unwrap().1.is_timeout);
+        assert!(late.reported.end().unwrap().1.is_timeout);
     }
 }
