@@ -71,9 +71,6 @@ pub struct MapLogArgs {
     /// The topics of a bag.
     #[command(flatten)]
     pub topics: BagTopicsArgs,
-    /// Treat all beams of a scan as measured at its stamp, even if the log has the time of each.
-    #[arg(long, hide_short_help = true)]
-    pub no_deskew: bool,
     /// Continue the map of an earlier run, its filter.map, after localization of the robot in it.
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
@@ -125,7 +122,7 @@ impl MapLogArgs {
             resolution: self.resolution,
             laser: self.laser.options(&self.topics),
             map: self.map.clone(),
-            deskew: !self.no_deskew,
+            deskew: !self.laser.no_deskew,
             map_image: self.map_image,
         }
     }

@@ -19,6 +19,9 @@ pub struct LaserArgs {
     /// Smallest range that is no return, m [default: the most frequent largest reading]
     #[arg(long, value_name = "M", value_parser = NumberArg(NumberText::above_zero("m")), allow_negative_numbers = true)]
     pub max_range: Option<f64>,
+    /// Treat all beams of a scan as measured at its stamp, even if the log has the time of each.
+    #[arg(long, hide_short_help = true)]
+    pub no_deskew: bool,
 }
 
 impl LaserArgs {
