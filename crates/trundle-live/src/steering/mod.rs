@@ -105,8 +105,12 @@ impl RunSteering {
 
     /// Stops the robot after the departure of its driver, unless another front end has paused it or let it go on since.
     pub fn end_of_hand(&self) {
-        if self.is_paused_here() && self.send(OperatorCommand::Pause).is_err() {
-            tracing::debug!("live page: the run is over");
+        if !self.is_paused_here() {
+            return;
+        }
+        match self.operator.send(OperatorCommand::Pause) {
+            Ok(number) => self.own_pause.store(number, Ordering::Relaxed),
+            Err(error) => tracing::debug!("live page: no stop after the departure of a driver: {error}"),
         }
     }
 
@@ -295,6 +299,12 @@ mod tests {
         steering.execute(&twist(0.5)).unwrap();
         steering.end_of_hand();
         assert_eq!(taken().last(), Some(&OperatorCommand::Pause), "its own drive ends with it");
+        steering.execute(&go(1.0)).unwrap();
+        assert_eq!(
+            taken().last(),
+            Some(&OperatorCommand::Continue),
+            "the next driver's task ends that pause"
+        );
         steering.execute(&twist(0.5)).unwrap();
         other.send(OperatorCommand::Continue).unwrap();
         steering.end_of_hand();
