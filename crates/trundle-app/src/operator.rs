@@ -7,6 +7,7 @@ mod annotation_edit;
 mod annotation_store;
 mod annotations;
 mod depth_view;
+mod hands;
 mod image_feed;
 mod link;
 mod map_copy;
@@ -25,6 +26,7 @@ mod visual_map_feed;
 
 pub use annotation_edit::AnnotationEdit;
 pub use depth_view::{DepthPicture, DepthView, DepthViewpoint};
+pub use hands::HandId;
 pub(crate) use image_feed::ImageFeed;
 pub use link::{Operator, OperatorLink, operator_link};
 pub(crate) use map_copy::MapCopy;

@@ -11,7 +11,7 @@ pub trait RobotCommands {
     /// Reason why the robot refuses the command.
     fn send(&mut self, command: OperatorCommand) -> Result<u64, String>;
 
-    /// Stops the robot and ends its mission, before all waiting commands.
+    /// Stops the robot and ends its mission, before all waiting commands; the robot obeys the next task.
     ///
     /// # Errors
     /// Reason why the robot cannot be stopped.
@@ -24,6 +24,6 @@ impl RobotCommands for Operator {
     }
 
     fn stop(&mut self) -> Result<(), String> {
-        Self::stop(self).map(drop).map_err(|error| error.to_string())
+        self.end_mission().map(drop).map_err(|error| error.to_string())
     }
 }

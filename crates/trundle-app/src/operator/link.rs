@@ -1,6 +1,7 @@
 //! The two ends of the link between a run and its operator.
 
 use super::annotation_store::AnnotationStore;
+use super::hands::HandId;
 use super::operator_error::OperatorError;
 use super::request::OperatorRequest;
 use super::request_queue::{RequestReceiver, RequestSender, request_queue};
@@ -12,7 +13,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use trundle_core::{MapAnnotations, PinholeCamera, RgbdImage, SensorEvent, Stamp};
+use trundle_core::{MapAnnotations, PinholeCamera, RgbdImage, SensorEvent, Stamp, Twist2};
 use trundle_io::EncodedRgbd;
 use trundle_runtime::{OperatorCommand, Robot, StepReport};
 
@@ -66,18 +67,40 @@ impl Operator {
     /// Sends a command; returns its number, by which [`RunView::mission`] identifies the mission that the command starts.
     ///
     /// # Errors
-    /// When the command cannot be carried out, too many wait, a person has driven without release since a stop, or the run is over.
+    /// When the command cannot be carried out, too many wait, or the run is over.
     pub fn send(&self, command: OperatorCommand) -> Result<u64, OperatorError> {
         self.shared.requests.send(command.validated()?)
     }
 
-    /// Stops the robot and ends its mission, before all waiting requests; drops those that would move it afterwards. A full queue does not
-    /// refuse a stop. Who drives by hand must release the control before the robot moves again. Returns the number of the pause.
+    /// Sends a twist of a person who drives by hand; returns its number.
+    ///
+    /// # Errors
+    /// When the twist is not valid, the person has driven without release since a stop, too many requests wait, or the run is over.
+    pub fn drive(&self, hand: HandId, twist: Twist2) -> Result<u64, OperatorError> {
+        OperatorCommand::Drive(twist).validated()?;
+        self.shared.requests.drive(hand, twist)
+    }
+
+    /// Notes a twist of a person that is refused elsewhere, so that a stop bars this person too.
+    pub fn note_refused_drive(&self, hand: HandId, twist: Twist2) {
+        self.shared.requests.note_hand(hand, twist);
+    }
+
+    /// Stops the robot, holds it and ends its mission, before all waiting requests; drops those that would move it afterwards. A full queue
+    /// does not refuse a stop. Who drives by hand must release the control before the robot obeys again. Returns the number of the pause.
     ///
     /// # Errors
     /// When the run is over.
     pub fn stop(&self) -> Result<u64, OperatorError> {
-        self.shared.requests.stop()
+        self.shared.requests.stop(true)
+    }
+
+    /// Ends the mission as [`Self::stop`] does, without a hold: the robot obeys the next task.
+    ///
+    /// # Errors
+    /// When the run is over.
+    pub fn end_mission(&self) -> Result<u64, OperatorError> {
+        self.shared.requests.stop(false)
     }
 
     /// Number of the last request that begins or ends a pause: of any front end.

@@ -1,12 +1,13 @@
 //! Requests on their way to the run: in the order of sending, except a stop.
 
+use super::hands::{HandId, Hands};
 use super::operator_error::{MAX_WAITING_REQUESTS, OperatorError};
 use super::request::OperatorRequest;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use trundle_core::Twist2;
-use trundle_runtime::{OperatorCommand, TELEOP_SILENCE_S};
+use trundle_runtime::OperatorCommand;
 
 /// The senders' end. Clones share the end.
 #[derive(Debug, Clone)]
@@ -27,8 +28,8 @@ struct Waiting {
     last: u64,
     /// Number of the last request that begins or ends a pause.
     last_pause: u64,
-    /// Time of a stop, or of the last twist that was refused after it. Twists are refused until their sender has released the robot.
-    stopped: Option<Instant>,
+    /// The people who drive by hand.
+    hands: Hands,
     is_over: bool,
 }
 
@@ -45,24 +46,36 @@ impl RequestSender {
         if waiting.requests.len() >= MAX_WAITING_REQUESTS {
             return Err(OperatorError::Busy);
         }
-        waiting.require_released(&command, Instant::now())?;
         let request = waiting.numbered(command);
         let id = request.id;
         waiting.requests.push_back(request);
         Ok(id)
     }
 
-    /// Puts a pause and the end of the mission before all waiting requests, and drops those that would move the robot after it. Driving by
-    /// hand that goes on is refused: it begins anew after a zero twist or a silence of [`TELEOP_SILENCE_S`]. Returns the number of the pause.
-    pub(super) fn stop(&self) -> Result<u64, OperatorError> {
+    /// Appends a twist of a person who drives by hand; returns its number.
+    pub(super) fn drive(&self, hand: HandId, twist: Twist2) -> Result<u64, OperatorError> {
+        if self.note_hand(hand, twist) {
+            return Err(OperatorError::Stopped);
+        }
+        self.send(OperatorCommand::Drive(twist))
+    }
+
+    /// Notes a twist of a person, also one that is refused elsewhere; returns whether a stop bars it.
+    pub(super) fn note_hand(&self, hand: HandId, twist: Twist2) -> bool {
+        lock(&self.waiting).hands.note(hand, twist, Instant::now())
+    }
+
+    /// Puts the end of the mission before all waiting requests, after a pause if `is_held` or somebody drives by hand; drops those that
+    /// would move the robot after it. Who drives by hand is barred until the release of the control. Returns the number of the first one.
+    pub(super) fn stop(&self, is_held: bool) -> Result<u64, OperatorError> {
         let mut waiting = self.open()?;
-        waiting.stopped = Some(Instant::now());
+        let is_driven = waiting.hands.bar(Instant::now());
         waiting.requests.retain(|request| !request.command.decides_motion());
-        let (pause, cancel) =
-            (waiting.numbered(OperatorCommand::Pause), waiting.numbered(OperatorCommand::cancel()));
-        let id = pause.id;
+        let pause = (is_held || is_driven).then(|| waiting.numbered(OperatorCommand::Pause));
+        let cancel = waiting.numbered(OperatorCommand::cancel());
+        let id = pause.as_ref().unwrap_or(&cancel).id;
         waiting.requests.push_front(cancel);
-        waiting.requests.push_front(pause);
+        pause.into_iter().for_each(|pause| waiting.requests.push_front(pause));
         Ok(id)
     }
 
@@ -103,17 +116,6 @@ impl Drop for RequestReceiver {
 }
 
 impl Waiting {
-    /// Refuses a twist of a person who has driven without release since a stop.
-    fn require_released(&mut self, command: &OperatorCommand, now: Instant) -> Result<(), OperatorError> {
-        let (OperatorCommand::Drive(twist), Some(since)) = (command, self.stopped) else { return Ok(()) };
-        if *twist == Twist2::ZERO || now - since > Duration::from_secs_f64(TELEOP_SILENCE_S) {
-            self.stopped = None;
-            return Ok(());
-        }
-        self.stopped = Some(now);
-        Err(OperatorError::Stopped)
-    }
-
     fn numbered(&mut self, command: OperatorCommand) -> OperatorRequest {
         self.last += 1;
         if command.decides_pause() {
@@ -161,7 +163,7 @@ mod tests {
         assert_eq!(sender.send(begin()).unwrap(), MAX_WAITING_REQUESTS as u64 + 1);
         drop(requests);
         assert!(matches!(sender.send(begin()), Err(OperatorError::Over)));
-        assert!(matches!(sender.stop(), Err(OperatorError::Over)));
+        assert!(matches!(sender.stop(true), Err(OperatorError::Over)));
     }
 
     #[test]
@@ -176,7 +178,7 @@ mod tests {
             }
         }
         for _ in 0..3 {
-            sender.stop().unwrap();
+            sender.stop(true).unwrap();
         }
         assert_eq!(taken(&requests), [OperatorCommand::Pause, OperatorCommand::cancel(), zones]);
         let last = sender.last();
@@ -185,24 +187,27 @@ mod tests {
     }
 
     #[test]
-    fn after_a_stop_driving_by_hand_begins_anew_by_a_zero_twist_or_by_silence() {
-        let drive = OperatorCommand::Drive(Twist2::new(0.3, 0.0));
-        let (mut waiting, start) = (Waiting::default(), Instant::now());
-        let at = |ms| start + Duration::from_millis(ms);
-        waiting.stopped = Some(start);
-        for ms in [100, 350, 600] {
-            let refused = waiting.require_released(&drive, at(ms));
-            assert!(matches!(refused, Err(OperatorError::Stopped)), "a held key is no release: {ms} ms");
-        }
-        waiting.require_released(&drive, at(901)).expect("silence is a release");
-        waiting.require_released(&drive, at(1000)).unwrap();
+    fn a_stop_bars_those_who_drive_by_hand_and_nobody_else() {
+        let (driver, other) = (HandId::Viewer(1), HandId::Topic);
+        let twist = Twist2::new(0.3, 0.0);
         let (sender, requests) = request_queue();
-        sender.stop().unwrap();
-        assert!(matches!(sender.send(drive.clone()), Err(OperatorError::Stopped)));
-        sender.send(begin()).expect("another request is not held back");
-        sender.send(OperatorCommand::Drive(Twist2::ZERO)).unwrap();
-        sender.send(drive.clone()).expect("a zero twist is a release");
-        assert_eq!(taken(&requests).last(), Some(&drive));
+        sender.drive(driver, twist).unwrap();
+        sender.stop(true).unwrap();
+        assert!(matches!(sender.drive(driver, twist), Err(OperatorError::Stopped)));
+        sender.drive(other, twist).expect("this person did not drive");
+        sender.drive(driver, Twist2::ZERO).unwrap();
+        sender.drive(driver, twist).expect("a zero twist is a release");
+        assert_eq!(taken(&requests).last(), Some(&OperatorCommand::Drive(twist)));
+    }
+
+    #[test]
+    fn the_end_of_a_mission_pauses_only_a_robot_that_somebody_drives() {
+        let (sender, requests) = request_queue();
+        sender.stop(false).unwrap();
+        assert_eq!(taken(&requests), [OperatorCommand::cancel()]);
+        sender.drive(HandId::Topic, Twist2::new(0.3, 0.0)).unwrap();
+        sender.stop(false).unwrap();
+        assert_eq!(taken(&requests), [OperatorCommand::Pause, OperatorCommand::cancel()]);
     }
 
     #[test]
@@ -211,7 +216,7 @@ mod tests {
         let pause = sender.send(OperatorCommand::Pause).unwrap();
         sender.send(begin()).unwrap();
         assert_eq!(sender.last_pause(), pause);
-        let stop = sender.stop().unwrap();
+        let stop = sender.stop(true).unwrap();
         assert!(sender.last_pause() == stop && stop > pause);
         let go_on = sender.send(OperatorCommand::Continue).unwrap();
         assert_eq!(sender.last_pause(), go_on);

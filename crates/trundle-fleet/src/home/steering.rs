@@ -82,17 +82,16 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_comes_before_waiting_commands_and_the_next_task_ends_its_pause() {
+    fn a_stop_comes_before_waiting_commands_and_the_next_task_is_obeyed() {
         let (mut operator, link) = operator_link();
-        let mut view = RobotStatus::at_rest(Pose2::new(0.0, 0.0, 0.0));
-        let mut run = |command, view: &RobotStatus| execute(&command, view, &NoPlaces, &mut operator);
-        run(HomeCommand::Return, &view).unwrap();
-        assert_eq!(run(HomeCommand::Stop, &view), Ok("stop".to_owned()));
-        let taken =
-            || std::iter::from_fn(|| link.next_request()).map(|request| request.command).collect::<Vec<_>>();
-        assert_eq!(taken(), [OperatorCommand::Pause, OperatorCommand::cancel()]);
-        view.hold = Some(MotionHold::Paused);
-        run(HomeCommand::Return, &view).unwrap();
-        assert_eq!(taken().last(), Some(&OperatorCommand::Continue));
+        let view = RobotStatus::at_rest(Pose2::new(0.0, 0.0, 0.0));
+        let mut run = |command| execute(&command, &view, &NoPlaces, &mut operator);
+        run(HomeCommand::Return).unwrap();
+        assert_eq!(run(HomeCommand::Stop), Ok("stop".to_owned()));
+        run(HomeCommand::Start).unwrap();
+        let taken: Vec<_> =
+            std::iter::from_fn(|| link.next_request()).map(|request| request.command).collect();
+        let explore = OperatorCommand::Begin(Mission::new(vec![Task::Explore]).unwrap());
+        assert_eq!(taken, [OperatorCommand::cancel(), explore]);
     }
 }

@@ -40,7 +40,6 @@ impl RobotCommands for Commands<'_> {
     }
 
     fn stop(&mut self) -> Result<(), String> {
-        self.send(OperatorCommand::Pause)?;
         self.send(OperatorCommand::cancel()).map(drop)
     }
 }

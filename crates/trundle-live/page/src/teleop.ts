@@ -54,8 +54,10 @@ export class Teleop {
     if (!this.isOn || !(event.code in KEYS) || event.target instanceof HTMLInputElement) return;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
+    // A key that repeats was down before a stop, which released it.
+    if (isDown && event.repeat) return;
     if (isDown) this.keys.add(event.code);
-    else this.keys.delete(event.code);
+    else if (this.keys.delete(event.code) && this.keys.size === 0) this.tick();
   }
 
   private moveStick(event: PointerEvent): void {

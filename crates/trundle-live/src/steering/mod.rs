@@ -11,7 +11,7 @@ use goal_check::require_free;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
-use trundle_app::operator::{AnnotationEdit, FolderMap, MapFolder, Operator};
+use trundle_app::operator::{AnnotationEdit, FolderMap, HandId, MapFolder, Operator};
 use trundle_core::{DriveLimits, Pose2, Twist2, Zone, require_in};
 use trundle_planning::{FootprintCheck, require_on_map};
 use trundle_runtime::{Mission, OperatorCommand, PoseGuess, RunSetting, Task};
@@ -49,11 +49,11 @@ impl RunSteering {
         Self { operator, kind, check, limits, maps, reading, own_pause: AtomicU64::new(0) }
     }
 
-    /// Carries out a request for the robot; ignores others, and requests for a map, which is read first.
+    /// Carries out a request of a viewer for the robot; ignores others, and requests for a map, which is read first.
     ///
     /// # Errors
     /// When the robot cannot carry the request out: a goal in a wall, a number out of range, a run that is over.
-    pub fn execute(&self, request: &Request) -> Result<(), CommandRefusal> {
+    pub fn execute(&self, request: &Request, hand: HandId) -> Result<(), CommandRefusal> {
         let is_for_hand = matches!(request, Request::Drive { .. } | Request::Stop { .. });
         if !is_for_hand {
             self.require_robot()?;
@@ -66,7 +66,7 @@ impl RunSteering {
             Request::Stop { .. } => self.stop(),
             Request::Pause { .. } => self.send(OperatorCommand::Pause),
             Request::Continue { .. } => self.send(OperatorCommand::Continue),
-            Request::Drive { v, omega } => self.drive(*v, *omega),
+            Request::Drive { v, omega } => self.drive(hand, *v, *omega),
             Request::SetPose { pose, .. } => self.send(OperatorCommand::SetPose(PoseGuess {
                 pose: pose.pose(),
                 position_sigma: POINTED_POSITION_SIGMA_M,
@@ -207,12 +207,23 @@ impl RunSteering {
         Ok(())
     }
 
-    fn drive(&self, v: f64, omega: f64) -> Result<(), CommandRefusal> {
-        let part = |part: f64, max: f64| HAND_SPEED * max * part.clamp(-1.0, 1.0);
-        let twist = Twist2::new(part(v, self.limits.v), part(omega, self.limits.omega));
-        let number = self.operator.send(OperatorCommand::Drive(twist))?;
+    fn drive(&self, hand: HandId, v: f64, omega: f64) -> Result<(), CommandRefusal> {
+        let number = self.operator.drive(hand, self.twist(v, omega))?;
         self.own_pause.store(number, Ordering::Relaxed);
         Ok(())
+    }
+
+    /// Notes a request of a viewer who is not in control: a stop holds against this hand, too.
+    pub fn note_refused(&self, request: &Request, hand: HandId) {
+        if let Request::Drive { v, omega } = request {
+            self.operator.note_refused_drive(hand, self.twist(*v, *omega));
+        }
+    }
+
+    /// The twist of a deflection, -1 to 1 each.
+    fn twist(&self, v: f64, omega: f64) -> Twist2 {
+        let part = |part: f64, max: f64| HAND_SPEED * max * part.clamp(-1.0, 1.0);
+        Twist2::new(part(v, self.limits.v), part(omega, self.limits.omega))
     }
 
     fn send(&self, command: OperatorCommand) -> Result<(), CommandRefusal> {
@@ -232,6 +243,8 @@ mod tests {
     use trundle_app::operator::operator_link;
     use trundle_core::Footprint;
 
+    const HAND: HandId = HandId::Viewer(1);
+
     fn steering() -> (RunSteering, trundle_app::operator::OperatorLink) {
         let (operator, link) = operator_link();
         let limits = DriveLimits::KOBUKI;
@@ -247,12 +260,12 @@ mod tests {
     #[test]
     fn goals_are_checked_before_the_robot_sees_them() {
         let (steering, _link) = steering();
-        assert_eq!(steering.execute(&go(1.0)), Ok(()));
-        let refusal = steering.execute(&go(1e9)).unwrap_err();
+        assert_eq!(steering.execute(&go(1.0), HAND), Ok(()));
+        let refusal = steering.execute(&go(1e9), HAND).unwrap_err();
         assert_eq!(refusal.goal, Some(0));
-        assert!(steering.execute(&Request::Go { id: 1, goals: vec![], append: false }).is_err());
+        assert!(steering.execute(&Request::Go { id: 1, goals: vec![], append: false }, HAND).is_err());
         let many = vec![Goal { x: 0.0, y: 0.0, theta: 0.0 }; 1000];
-        assert!(steering.execute(&Request::Go { id: 1, goals: many, append: true }).is_err());
+        assert!(steering.execute(&Request::Go { id: 1, goals: many, append: true }, HAND).is_err());
     }
 
     #[test]
@@ -260,7 +273,7 @@ mod tests {
         let (steering, link) = steering();
         let requests = [Request::Explore { id: 1 }, Request::Return { id: 2 }, Request::Dock { id: 3 }];
         for (request, task) in requests.iter().zip([Task::Explore, Task::Return, Task::Dock]) {
-            steering.execute(request).unwrap();
+            steering.execute(request, HAND).unwrap();
             let mission = Mission::new(vec![task]).unwrap();
             assert_eq!(link.next_request().unwrap().command, OperatorCommand::Begin(mission));
         }
@@ -275,13 +288,13 @@ mod tests {
             kind: trundle_core::ZoneKind::Slow(0.2),
             outline: outline.to_vec(),
         };
-        let set = |zone| steering.execute(&Request::SetZone { id: 1, zone });
+        let set = |zone| steering.execute(&Request::SetZone { id: 1, zone }, HAND);
         let bow = set(zone(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]])).unwrap_err().text;
         assert!(bow.contains("crossed by itself"), "{bow}");
         assert!(set(zone(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])).is_ok());
-        assert!(steering.execute(&Request::RemoveZone { id: 1, number: 7 }).is_err());
+        assert!(steering.execute(&Request::RemoveZone { id: 1, number: 7 }, HAND).is_err());
         let change =
-            |key: &str, value| steering.execute(&Request::Change { id: 1, key: key.to_owned(), value });
+            |key: &str, value| steering.execute(&Request::Change { id: 1, key: key.to_owned(), value }, HAND);
         let fast = change("limits.v_m_s", 5.0).unwrap_err().text;
         assert_eq!(fast, format!("limits.v_m_s is 5 m/s, expected 0.05 to {}", DriveLimits::KOBUKI.v));
         assert!(change("drive.wheel_radius_m", 1.0).unwrap_err().text.contains("cannot change"));
@@ -296,16 +309,16 @@ mod tests {
         let taken =
             || std::iter::from_fn(|| link.next_request()).map(|request| request.command).collect::<Vec<_>>();
         let twist = |v| Request::Drive { v, omega: 0.0 };
-        steering.execute(&twist(0.5)).unwrap();
+        steering.execute(&twist(0.5), HAND).unwrap();
         steering.end_of_hand();
         assert_eq!(taken().last(), Some(&OperatorCommand::Pause), "its own drive ends with it");
-        steering.execute(&go(1.0)).unwrap();
+        steering.execute(&go(1.0), HAND).unwrap();
         assert_eq!(
             taken().last(),
             Some(&OperatorCommand::Continue),
             "the next driver's task ends that pause"
         );
-        steering.execute(&twist(0.5)).unwrap();
+        steering.execute(&twist(0.5), HAND).unwrap();
         other.send(OperatorCommand::Continue).unwrap();
         steering.end_of_hand();
         assert_eq!(
@@ -316,10 +329,10 @@ mod tests {
         steering.stop().unwrap();
         other.send(OperatorCommand::Pause).unwrap();
         taken();
-        steering.execute(&go(1.0)).unwrap();
+        steering.execute(&go(1.0), HAND).unwrap();
         assert!(!taken().contains(&OperatorCommand::Continue), "another front end paused the robot");
         steering.stop().unwrap();
-        steering.execute(&go(1.0)).unwrap();
+        steering.execute(&go(1.0), HAND).unwrap();
         assert_eq!(taken().last(), Some(&OperatorCommand::Continue));
     }
 
@@ -327,7 +340,7 @@ mod tests {
     fn a_run_that_is_over_is_named() {
         let (steering, link) = steering();
         drop(link);
-        assert_eq!(steering.execute(&Request::Stop { id: 1 }).unwrap_err().text, "the run is over");
+        assert_eq!(steering.execute(&Request::Stop { id: 1 }, HAND).unwrap_err().text, "the run is over");
         steering.end_of_hand();
     }
 }

@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::OwnedSemaphorePermit;
 use tokio::sync::mpsc::Sender;
 use tokio::task::spawn_blocking;
+use trundle_app::operator::HandId;
 
 /// Longest silence of a viewer: it answers ten views per second. Source: ours; a tab in the background answers once per second at least.
 const SILENCE_TIMEOUT: Duration = Duration::from_secs(60);
@@ -140,7 +141,7 @@ impl Viewer<'_> {
     }
 
     fn execute(&self, request: &Request) -> Result<(), CommandRefusal> {
-        let state = self.state;
+        let (state, hand) = (self.state, HandId::Viewer(self.id));
         self.require_drive()?;
         match request {
             // Every viewer with driving permission may stop.
@@ -155,9 +156,12 @@ impl Viewer<'_> {
                 }
                 return Ok(());
             }
-            _ => require_wheel(state, self.id)?,
+            _ => {
+                let free = require_wheel(state, self.id);
+                free.inspect_err(|_| state.steering.note_refused(request, hand))?;
+            }
         }
-        state.steering.execute(request)
+        state.steering.execute(request, hand)
     }
 }
 

@@ -4,6 +4,7 @@ use crate::browser::Browser;
 use crate::live_run::LiveRun;
 use serde_json::json;
 use std::time::{Duration, Instant};
+use trundle_app::operator::RunView;
 use trundle_core::Pose2;
 use trundle_live::Access;
 use trundle_runtime::{MotionHold, Task};
@@ -65,30 +66,63 @@ fn driving_by_hand_pauses_the_mission_and_a_viewer_that_goes_stops_the_robot() {
     assert_eq!(other.ask(json!({"type": "return"})), None, "the wheel is free again");
 }
 
-/// A person holds the key down while another one presses STOP.
+/// A person who holds the key down: a twist each 50 ms.
+fn hold_key(driver: &mut Browser, times: usize) {
+    for _ in 0..times {
+        driver.send(&json!({"type": "drive", "v": 0.5, "omega": 0.0}));
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
+/// A twist that reaches the robot pauses its mission.
+fn is_driven(view: &RunView) -> bool {
+    view.hold == Some(MotionHold::Paused)
+}
+
 #[test]
 fn a_stop_holds_against_a_hand_that_goes_on_until_it_lets_go() {
     let run = LiveRun::start();
     let mut driver = Browser::enter(&run, Access::Drive, "driver");
     let mut other = Browser::enter(&run, Access::Drive, "other");
-    let drive = json!({"type": "drive", "v": 0.5, "omega": 0.0});
-    driver.send(&drive);
-    run.wait_for("by hand", |view| view.twist.v > 0.0);
+    hold_key(&mut driver, 3);
+    run.wait_for("by hand", is_driven);
     assert_eq!(other.ask(json!({"type": "stop"})), None);
-    run.wait_for("rest", |view| view.twist.v == 0.0);
-    for _ in 0..10 {
-        driver.send(&drive);
-        std::thread::sleep(Duration::from_millis(50));
-        assert_eq!(run.view().twist.v, 0.0, "the robot moves after a stop");
-    }
+    hold_key(&mut driver, 1);
+    assert_eq!(driver.ask(json!({"type": "continue"})), None);
+    run.wait_for("no pause", |view| !is_driven(view));
+    hold_key(&mut driver, 10);
+    assert!(!is_driven(&run.view()), "a hand drives on after a stop");
     let refusal = driver.wait_for("refused");
     assert!(
         refusal["refusal"].as_str().is_some_and(|text| text.contains("release the control")),
         "{refusal}"
     );
     driver.send(&json!({"type": "drive", "v": 0.0, "omega": 0.0}));
-    driver.send(&drive);
-    run.wait_for("by hand again", |view| view.twist.v > 0.0);
+    assert_eq!(driver.ask(json!({"type": "continue"})), None);
+    run.wait_for("no pause", |view| !is_driven(view));
+    hold_key(&mut driver, 1);
+    run.wait_for("by hand again", is_driven);
+}
+
+/// The twists of a person who holds the key down without the wheel are refused; that is no release.
+#[test]
+fn a_stop_holds_against_a_hand_that_had_lost_the_wheel() {
+    let run = LiveRun::start();
+    let mut driver = Browser::enter(&run, Access::Drive, "driver");
+    let mut other = Browser::enter(&run, Access::Drive, "other");
+    hold_key(&mut driver, 3);
+    assert_eq!(other.ask(json!({"type": "take_wheel"})), None);
+    hold_key(&mut driver, 10);
+    assert_eq!(other.ask(json!({"type": "stop"})), None);
+    hold_key(&mut driver, 1);
+    assert_eq!(other.ask(json!({"type": "continue"})), None);
+    run.wait_for("no pause", |view| !is_driven(view));
+    drop(other);
+    hold_key(&mut driver, 20);
+    assert!(!is_driven(&run.view()), "a hand drives on after a stop");
+    std::thread::sleep(Duration::from_millis(400));
+    hold_key(&mut driver, 1);
+    run.wait_for("by hand again", is_driven);
 }
 
 #[test]

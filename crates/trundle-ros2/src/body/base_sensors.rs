@@ -153,7 +153,8 @@ fn subscribe_odometry(
         let Some(at) = shared.stamp(&name, &message.header.stamp) else { return };
         let Some(own) = shared.accept(&name, odometry::from_ros(&message, at)) else { return };
         let Some(own) = on_base(own, &message.child_frame_id, &base, &shared) else { return };
-        lock(&shared.odom_frame).get_or_insert(message.header.frame_id);
+        let frame = message.header.frame_id.trim_start_matches('/').to_owned();
+        lock(&shared.odom_frame).get_or_insert(frame);
         note(&mut lock(&shared.odometry), own);
         let (event, jump) = events.add(&own, shared.uses_gyro.load(Ordering::Relaxed));
         jump.into_iter().for_each(|jump| shared.diagnostics.warn(&name, jump.to_string()));

@@ -5,7 +5,7 @@ use crate::clock::RosClock;
 use crate::node::{Diagnostics, GoalEnd};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use trundle_app::operator::{Operator, OperatorError, RunView};
+use trundle_app::operator::{HandId, Operator, OperatorError, RunView};
 use trundle_core::Twist2;
 use trundle_runtime::{Mission, OperatorCommand, Reason, Task, TaskEnd};
 
@@ -192,6 +192,14 @@ impl ActiveGoal {
     /// When the command cannot be carried out, too many wait, or the run is over.
     pub fn send(&self, command: OperatorCommand) -> Result<u64, OperatorError> {
         self.operator.send(command)
+    }
+
+    /// Sends a twist of a person to the run.
+    ///
+    /// # Errors
+    /// When the twist cannot be carried out, the person has driven without release since a stop, too many requests wait, or the run is over.
+    pub fn drive(&self, twist: Twist2) -> Result<u64, OperatorError> {
+        self.operator.drive(HandId::Topic, twist)
     }
 
     /// Follows the goal: feedback, its end, cancel, time limit. Called in the node's thread.

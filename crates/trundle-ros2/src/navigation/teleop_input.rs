@@ -7,7 +7,6 @@ use crate::twist_topic::subscribe_twists;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use trundle_core::Twist2;
-use trundle_runtime::OperatorCommand;
 
 /// The topic. Source: Nav2, AssistedTeleop.
 const TOPIC: &str = "cmd_vel_teleop";
@@ -28,7 +27,7 @@ pub fn offer(node: &mut RosNode, active: &ActiveGoal, is_stamped: bool) -> Resul
     let (active, diagnostics, name) = (active.clone(), node.diagnostics(), node.names().resolve(TOPIC));
     node.every_tick(move |now| {
         let due = newest.lock().unwrap_or_else(PoisonError::into_inner).take_due(now);
-        let sent = due.map_or(Ok(0), |twist| active.send(OperatorCommand::Drive(twist)));
+        let sent = due.map_or(Ok(0), |twist| active.drive(twist));
         sent.map_or_else(|error| diagnostics.warn(&name, error.to_string()), drop);
     });
     Ok(())
@@ -60,6 +59,7 @@ mod tests {
     use crate::node::{Names, Networks, NodeSettings, qos};
     use trundle_app::operator::operator_link;
     use trundle_core::Stamp;
+    use trundle_runtime::OperatorCommand;
 
     /// A domain that no other test has. Source: ours, below those of `tests/it`.
     const DOMAIN: u16 = 97;
