@@ -51,7 +51,7 @@ impl TimeLimit {
 
     /// Whether the time is over after `passed`; `ended`: the tasks that have ended.
     fn is_over(&self, passed: Duration, ended: &[(usize, TaskEnd)]) -> bool {
-        passed > self.time && !(self.is_of_first_task && !ended.is_empty())
+        passed > self.time && (!self.is_of_first_task || ended.is_empty())
     }
 }
 
