@@ -5,7 +5,7 @@ use trundle_core::Twist2;
 use trundle_runtime::TELEOP_SILENCE_S;
 
 /// Silence after which a person drives no more.
-const SILENCE: Duration = Duration::from_millis((TELEOP_SILENCE_S * 1000.0) as u64);
+const RELEASE_SILENCE: Duration = Duration::from_millis((TELEOP_SILENCE_S * 1000.0) as u64);
 
 /// A person who may drive by hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,7 +54,7 @@ impl Hands {
     }
 
     fn forget_silent(&mut self, now: Instant) {
-        self.0.retain(|hand| now.saturating_duration_since(hand.last) <= SILENCE);
+        self.0.retain(|hand| now.saturating_duration_since(hand.last) <= RELEASE_SILENCE);
     }
 }
 
