@@ -23,7 +23,7 @@ const UNREACHABLE: [&str; 6] = [
 /// Result of a dry run.
 #[derive(Debug, PartialEq, Eq)]
 pub enum DryRun {
-    /// Every crate can be published; the packages lie in `target/package`.
+    /// Every crate can be published.
     Passed,
     /// The registry cannot be reached: the reason.
     Unreachable(String),

@@ -21,8 +21,7 @@ pub struct Published {
     version: String,
 }
 
-/// Packs every crate that is published, as a dry run of its publication or without network, and checks the packages and the facade's
-/// features: the usual ones, or every one.
+/// Publishes every crate as a dry run, packs it, and checks the packages and the facade's features: the usual ones, or every one.
 pub fn run(root: &Path, every_feature: bool) -> Verdict {
     let packages = published(root)?;
     let findings = [check_packages(root, &packages)?, features::check(root, every_feature)?].concat();
@@ -45,13 +44,9 @@ fn check_packages(root: &Path, packages: &[Published]) -> Result<Vec<String>, St
     match dry_run::run(root)? {
         DryRun::Passed => println!("  cargo publish --dry-run: {} crates in order", packages.len()),
         DryRun::Failed(why) => return Err(format!("cargo publish --dry-run fails: {why}")),
-        DryRun::Unreachable(why) => {
-            println!(
-                "  skipped: cargo publish --dry-run needs the registry ({why}); the crates are packed without it"
-            );
-            pack(root, packages)?;
-        }
+        DryRun::Unreachable(why) => println!("  skipped: cargo publish --dry-run needs the registry ({why})"),
     }
+    pack(root, packages)?;
     let unpacked = program::scratch(root, "packages")?;
     let mut findings = Vec::new();
     for package in packages {
