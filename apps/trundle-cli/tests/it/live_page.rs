@@ -175,6 +175,15 @@ impl Browser {
     }
 }
 
+/// The images of a drive by a script, as a folder `data` below `place`.
+fn recorded_drive(place: &Path, script: &str) -> PathBuf {
+    let [drive, data] = ["drive.txt", "data"].map(|name| place.join(name));
+    std::fs::write(&drive, script).unwrap();
+    let record = ["sim", "demo", "--rate", "10", "--drive", text(&drive), "--record", text(&data)];
+    assert!(trundle(&record).status.success());
+    data
+}
+
 /// Files of a folder without wall-clock times, with their bytes.
 fn files(folder: &Path, names: &[&str]) -> Vec<(PathBuf, Vec<u8>)> {
     names.iter().map(|name| (PathBuf::from(name), std::fs::read(folder.join(name)).unwrap())).collect()
@@ -230,11 +239,8 @@ fn a_script_that_is_watched_records_the_same_bytes_and_the_page_cannot_drive() {
 #[test]
 fn a_sequence_is_shown_while_it_is_tracked_and_its_results_are_the_same() {
     let place = tempfile::tempdir().unwrap();
-    let script = place.path().join("drive.txt");
-    std::fs::write(&script, "0 0.3 0.2\n4 0.2 -0.3\n8 0 0\n").unwrap();
-    let [data, plain, shown] = ["data", "plain", "shown"].map(|name| place.path().join(name));
-    let record = ["sim", "demo", "--rate", "10", "--drive", text(&script), "--record", text(&data)];
-    assert!(trundle(&record).status.success());
+    let data = recorded_drive(place.path(), "0 0.3 0.2\n4 0.2 -0.3\n8 0 0\n");
+    let [plain, shown] = ["plain", "shown"].map(|name| place.path().join(name));
     let args = |out| ["slam", text(&data), "--height", "0.45", "--tilt", "8", "--out", out];
     assert!(trundle(&args(text(&plain))).status.success());
     let program = LiveProgram::start(&args(text(&shown)));
@@ -255,11 +261,7 @@ fn a_sequence_is_shown_while_it_is_tracked_and_its_results_are_the_same() {
 #[test]
 fn a_log_is_shown_while_it_is_mapped_and_localized_and_its_results_are_the_same() {
     let place = tempfile::tempdir().unwrap();
-    let script = place.path().join("drive.txt");
-    std::fs::write(&script, "0 0.3 0.2\n4 0.2 -0.3\n8 0 0\n").unwrap();
-    let data = place.path().join("data");
-    let record = ["sim", "demo", "--rate", "10", "--drive", text(&script), "--record", text(&data)];
-    assert!(trundle(&record).status.success());
+    let data = recorded_drive(place.path(), "0 0.3 0.2\n4 0.2 -0.3\n8 0 0\n");
     let mapped = place.path().join("mapped");
     for options in [&[][..], &["--map", text(&mapped.join("filter.map")), "--localise"]] {
         let [plain, shown] = match options {
@@ -293,11 +295,8 @@ fn a_log_is_shown_while_it_is_mapped_and_localized_and_its_results_are_the_same(
 #[test]
 fn a_replay_is_shown_drives_nothing_and_its_results_are_the_same() {
     let place = tempfile::tempdir().unwrap();
-    let script = place.path().join("drive.txt");
-    std::fs::write(&script, "0 0.3 0.2\n3 0.2 -0.3\n6 0 0\n").unwrap();
-    let [data, plain, shown] = ["data", "plain", "shown"].map(|name| place.path().join(name));
-    let record = ["sim", "demo", "--rate", "10", "--drive", text(&script), "--record", text(&data)];
-    assert!(trundle(&record).status.success());
+    let data = recorded_drive(place.path(), "0 0.3 0.2\n3 0.2 -0.3\n6 0 0\n");
+    let [plain, shown] = ["plain", "shown"].map(|name| place.path().join(name));
     let args = |out| ["replay", text(&data), "--out", out];
     assert!(trundle(&args(text(&plain))).status.success());
     let program = LiveProgram::start(&args(text(&shown)));

@@ -7,7 +7,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Longest time of one run \[s\].
-const RUN_LIMIT_S: &str = "120";
+const RUN_LIMIT_S: &str = "60";
+/// Longest time of a run of several tasks, or of an exploration \[s\].
+const LONG_RUN_LIMIT_S: &str = "120";
 
 /// Robots run in real time: one at a time, so that they do not wait for each other.
 static TURN: Mutex<()> = Mutex::new(());
@@ -230,10 +232,10 @@ fn an_interrupted_mission_is_resumed_without_its_done_task() {
     let robot = EmulatedRobot::start(folder.path());
     let (mission, checkpoint) = (folder.path().join("mission.toml"), folder.path().join("robot.checkpoint"));
     std::fs::write(&mission, "[[task]]\ngo = [0.4, 0.0, 0.0]\n\n[[task]]\ngo = [0.8, 0.0, 0.0]\n").unwrap();
-    let mut first = robot.run(&["--time-limit", RUN_LIMIT_S, "-v"]);
+    let mut first = robot.run(&["--time-limit", LONG_RUN_LIMIT_S, "-v"]);
     first.arg("--mission").arg(&mission).arg("--checkpoint").arg(&checkpoint);
     assert_eq!(interrupt_on_second_way(first), Some(130));
-    let mut second = robot.run(&["--time-limit", RUN_LIMIT_S]);
+    let mut second = robot.run(&["--time-limit", LONG_RUN_LIMIT_S]);
     let output = second.arg("--resume").arg(&checkpoint).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
     let announced = text(&output);
@@ -269,7 +271,7 @@ fn a_small_room_is_explored_over_the_wires() {
     let side = write_small_room(folder.path());
     let room = folder.path().join("room.yaml");
     let robot = EmulatedRobot::start_in(folder.path(), &[room.to_str().unwrap(), "--start", "1.3,1.3,0"]);
-    let output = robot.run(&["--explore", "--time-limit", RUN_LIMIT_S]).output().unwrap();
+    let output = robot.run(&["--explore", "--time-limit", LONG_RUN_LIMIT_S]).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
     let map = std::fs::read(folder.path().join("out/map.pgm")).unwrap();
     let free = map.iter().filter(|cell| **cell == 254).count();
