@@ -55,16 +55,16 @@ fn missing(list: &str) -> Vec<String> {
 fn try_program(system: &Path, runner: &[PathBuf]) -> Result<(), String> {
     let own = system.join("usr/bin/trundle");
     let words: Vec<String> = runner.iter().chain([&own]).map(|word| word.display().to_string()).collect();
-    let (program, before) = (Path::new(&words[0]), &words[1..]);
-    let args =
-        |args: &[&str]| [before, &args.iter().map(|arg| (*arg).to_owned()).collect::<Vec<_>>()].concat();
-    let printed =
-        |given: &[&str]| output(program, &args(given).iter().map(String::as_str).collect::<Vec<_>>());
+    let printed = |given: &[&str]| {
+        let all: Vec<&str> = words.iter().map(String::as_str).chain(given.iter().copied()).collect();
+        output(Path::new(all[0]), &all[1..])
+    };
     println!("  {}", String::from_utf8_lossy(&printed(&["-V"])?).trim());
     let config = system.join("etc/trundle/robot.toml").display().to_string();
     printed(&["config", "--quiet", &config])?;
-    let checks = Command::new(program).args(args(&["doctor", "--json"])).stdin(Stdio::null()).output();
-    let checks = checks.map_err(|e| format!("cannot start {}: {e}", program.display()))?;
+    let mut doctor = Command::new(&words[0]);
+    let checks = doctor.args(&words[1..]).args(["doctor", "--json"]).stdin(Stdio::null()).output();
+    let checks = checks.map_err(|e| format!("cannot start {}: {e}", words[0]))?;
     let is_json = serde_json::from_slice::<serde_json::Value>(&checks.stdout).is_ok();
     is_json.then_some(()).ok_or("trundle doctor --json of the package is not JSON".to_owned())
 }
