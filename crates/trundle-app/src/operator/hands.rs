@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 use trundle_core::Twist2;
 use trundle_runtime::TELEOP_SILENCE_S;
 
-/// Silence after which a person drives no more.
+/// Silence that ends driving by hand: [`TELEOP_SILENCE_S`].
 const RELEASE_SILENCE: Duration = Duration::from_millis((TELEOP_SILENCE_S * 1000.0) as u64);
 
 /// A person who may drive by hand.

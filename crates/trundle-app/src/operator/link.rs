@@ -64,7 +64,8 @@ pub fn operator_link() -> (Operator, OperatorLink) {
 }
 
 impl Operator {
-    /// Sends a command; returns its number, by which [`RunView::mission`] identifies the mission that the command starts.
+    /// Sends a command; returns its number, by which [`RunView::mission`] identifies the mission that the command starts. The twists of a person
+    /// go by [`Self::drive`], so that a stop holds against them.
     ///
     /// # Errors
     /// When the command cannot be carried out, too many wait, or the run is over.

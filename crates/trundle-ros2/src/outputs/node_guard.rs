@@ -27,7 +27,7 @@ impl NodeGuard {
         Self { node, operator, diagnostics, stop: Stop::NotNeeded }
     }
 
-    /// Holds the robot if a thread has died. A run whose queue is full is told again at the next check.
+    /// Holds the robot if a thread has died. A run whose queue is full gets the command at the next check.
     pub fn check(&mut self) {
         if self.stop == Stop::Sent {
             return;
