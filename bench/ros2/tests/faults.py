@@ -36,15 +36,10 @@ ASKED = 200
 @contextlib.contextmanager
 def drive(checks, options, folder, world="flat"):
     """Robot and trundle, and a user that hears diagnostics; they end with the block."""
-    processes, user = goals.start(options, folder, world, 0), User()
-    user.listen(DiagnosticArray, "/diagnostics", 100, keep=True)
-    try:
+    with goals.running(options, folder, world, 0) as processes, contextlib.closing(User()) as user:
+        user.listen(DiagnosticArray, "/diagnostics", 100, keep=True)
         checks.check("trundle is active", user.wait_until_active())
         yield processes, user
-    finally:
-        for process in reversed(processes):
-            process.end()
-        user.node.destroy_node()
 
 
 def named(user, *words):

@@ -4,6 +4,7 @@ goals.py --trundle PATH [--worlds flat corridor-a ...] [--seeds 0 1 2 3 4]. Each
 world's goals one after the other by NavigateToPose and writes a line of JSON to OUT/goals.jsonl. Exit 0: every goal was reached.
 """
 import argparse
+import contextlib
 import json
 import pathlib
 import sys
@@ -38,6 +39,17 @@ def start(options, folder, world, seed, *robot_options):
     return [robot, start_trundle(options, folder)]
 
 
+@contextlib.contextmanager
+def running(options, folder, world, seed, *robot_options):
+    """The robot and trundle of `start`, until the end of the block."""
+    processes = start(options, folder, world, seed, *robot_options)
+    try:
+        yield processes
+    finally:
+        for process in reversed(processes):
+            process.end()
+
+
 def drive(user, goal):
     """Send one goal; the result, or `None` if the simulated time is up."""
     sent = user.go(goal)
@@ -51,9 +63,8 @@ def drive(user, goal):
 
 
 def score(checks, options, world, seed, folder):
-    processes = start(options, folder, world, seed)
-    user, lines = User(), []
-    try:
+    lines = []
+    with running(options, folder, world, seed), contextlib.closing(User()) as user:
         if not checks.check(f"{world} {seed}: trundle is active", user.wait_until_active()):
             return lines
         for number, goal in enumerate(worlds.build(world, seed).goals):
@@ -66,10 +77,6 @@ def score(checks, options, world, seed, folder):
             lines.append({"world": world, "seed": seed, "goal": number, "good": good, "outcome": outcome(result), "distance_m": round(distance, 4),
                           "angle_deg": round(angle, 3), "simulated_s": round(took, 2)})
         checks.check(f"{world} {seed}: no contact", user.contacts() == 0, str(user.contacts()))
-    finally:
-        for process in reversed(processes):
-            process.end()
-        user.node.destroy_node()
     return [line | {"contacts": user.contacts()} for line in lines]
 
 

@@ -96,6 +96,9 @@ class Listener:
         self.executor.add_node(self.node)
         self.kept, self.last = {}, {}
 
+    def close(self):
+        self.node.destroy_node()
+
     def listen(self, kind, topic, qos=10, keep=False):
         """Keep the last message of a topic, or all of them."""
         def take(message):

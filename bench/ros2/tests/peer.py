@@ -59,13 +59,9 @@ def main():
     options = parser.parse_args()
     out = options.out or pathlib.Path(tempfile.mkdtemp(prefix="peer-"))
     checks, user = Checks("peer"), User()
-    processes = goals.start(options, out, "flat", 0, *ROBOT)
-    try:
+    with goals.running(options, out, "flat", 0, *ROBOT):
         if checks.check("trundle is active", user.wait_until_active()):
             drive(checks, user)
-    finally:
-        for process in reversed(processes):
-            process.end()
     print(f"logs: {out}")
     return checks.report()
 
