@@ -89,8 +89,11 @@ impl DepthCamera for Kinect2UsbCamera {
         loop {
             match self.stream.next(timeout.saturating_sub(start.elapsed()))? {
                 None => return Ok(None),
-                Some(Streamed::Color(packet)) => self.pair.color = Some(jpeg(packet)),
-                Some(Streamed::Depth(packed)) => self.pair.depth = Some(self.depth(&packed)?),
+                Some(Streamed::Color(packet)) => self.pair.add_color(jpeg(packet)),
+                Some(Streamed::Depth(packed)) => {
+                    let depth = self.depth(&packed)?;
+                    self.pair.add_depth(depth);
+                }
             }
             if let Some(CameraFrame { color, depth }) = self.pair.take() {
                 return Ok(Some(CameraFrame { color: turned_back_color(&color)?, depth }));

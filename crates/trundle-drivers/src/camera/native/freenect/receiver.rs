@@ -57,7 +57,8 @@ pub(super) unsafe extern "C" fn on_video(_: *mut FreenectDevice, data: *mut c_vo
     // SAFETY: the caller vouches for the data.
     unsafe {
         receive(data, 3, |receiver, bytes| {
-            receiver.pair.color = Some(receiver.image(PixelFormat::Rgb8, bytes, ticks))
+            let image = receiver.image(PixelFormat::Rgb8, bytes, ticks);
+            receiver.pair.add_color(image);
         })
     };
 }
@@ -70,7 +71,8 @@ pub(super) unsafe extern "C" fn on_depth(_: *mut FreenectDevice, data: *mut c_vo
     // SAFETY: the caller vouches for the data.
     unsafe {
         receive(data, 2, |receiver, bytes| {
-            receiver.pair.depth = Some(receiver.image(PixelFormat::Disparity11, bytes, ticks));
+            let image = receiver.image(PixelFormat::Disparity11, bytes, ticks);
+            receiver.pair.add_depth(image);
         });
     };
 }

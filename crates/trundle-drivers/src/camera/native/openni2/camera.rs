@@ -1,7 +1,7 @@
 //! A camera of OpenNI2.
 
 use super::functions::OpenNiApi;
-use super::playback::Playback;
+use super::playback::{Playback, add};
 use super::session::{Kind, OpenDevice, depth_unit_m, list_devices, pixel_format};
 use crate::camera::native::freenect::calibration::depth_camera_pose;
 use crate::camera::native::image_pair::ImagePair;
@@ -92,13 +92,7 @@ impl Images {
     fn add(&mut self, kind: Kind, image: RawImage, number: c_int) -> Option<CameraFrame> {
         match self {
             Self::Recorded(playback) => playback.add(kind, image, number),
-            Self::Live(pair) => {
-                match kind {
-                    Kind::Color => pair.color = Some(image),
-                    Kind::Depth => pair.depth = Some(image),
-                }
-                pair.take()
-            }
+            Self::Live(pair) => add(pair, kind, image),
         }
     }
 }

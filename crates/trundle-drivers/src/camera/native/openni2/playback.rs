@@ -3,9 +3,8 @@
 //! The library plays one image for each that is read. Images of one kind may lead by some frames.
 
 use super::session::Kind;
-use crate::camera::native::image_pair::max_gap_s;
+use crate::camera::native::image_pair::ImagePair;
 use crate::camera::{CameraFrame, RawImage};
-use std::collections::VecDeque;
 use std::ffi::c_int;
 use std::time::{Duration, Instant};
 
@@ -14,12 +13,19 @@ const MAX_WAITING_IMAGES: usize = 30;
 /// Time without an image after which a damaged recording has ended: 2 s. Source: ours; a whole one ends with its last image.
 const END_SILENCE: Duration = Duration::from_secs(2);
 
+/// Adds an image; returns the pair that it completes.
+pub(super) fn add(pair: &mut ImagePair, kind: Kind, image: RawImage) -> Option<CameraFrame> {
+    match kind {
+        Kind::Color => pair.add_color(image),
+        Kind::Depth => pair.add_depth(image),
+    }
+    pair.take()
+}
+
 /// The state of a recording.
 #[derive(Debug)]
 pub(super) struct Playback {
-    max_gap_s: f64,
-    /// Colour and depth images that wait for the other kind.
-    waiting: [VecDeque<RawImage>; 2],
+    pair: ImagePair,
     /// Number of colour and depth images in the file.
     totals: [c_int; 2],
     /// Numbers of the newest colour and depth image, which count from 1.
@@ -33,8 +39,7 @@ impl Playback {
     pub(super) fn new(totals: [c_int; 2], rate_hz: f64) -> Self {
         let has_ended = totals.contains(&0);
         Self {
-            max_gap_s: max_gap_s(rate_hz),
-            waiting: Default::default(),
+            pair: ImagePair::with_waiting(rate_hz, MAX_WAITING_IMAGES),
             totals,
             newest: [0; 2],
             silent_since: None,
@@ -47,27 +52,7 @@ impl Playback {
         self.silent_since = None;
         self.newest[kind as usize] = number;
         self.has_ended = self.newest.iter().zip(&self.totals).all(|(newest, total)| newest >= total);
-        let waiting = &mut self.waiting[kind as usize];
-        waiting.push_back(image);
-        if waiting.len() > MAX_WAITING_IMAGES {
-            waiting.pop_front();
-        }
-        self.take()
-    }
-
-    fn take(&mut self) -> Option<CameraFrame> {
-        let [colors, depths] = &mut self.waiting;
-        loop {
-            let gap_s = colors.front()?.device_stamp - depths.front()?.device_stamp;
-            if gap_s.abs() <= self.max_gap_s {
-                return Some(CameraFrame { color: colors.pop_front()?, depth: depths.pop_front()? });
-            }
-            if gap_s < 0.0 {
-                colors.pop_front()
-            } else {
-                depths.pop_front()
-            };
-        }
+        add(&mut self.pair, kind, image)
     }
 
     /// Records at `now` that no image came.
@@ -126,7 +111,7 @@ mod tests {
         );
         let alone: Vec<(Kind, c_int)> = (4..100).map(|number| (Depth, number)).collect();
         assert!(pairs(&mut playback, &alone).is_empty());
-        assert_eq!(playback.waiting[1].len(), MAX_WAITING_IMAGES);
+        assert_eq!(playback.pair.waiting()[1], MAX_WAITING_IMAGES);
     }
 
     #[test]

@@ -45,16 +45,18 @@ impl Pairing {
         for content in contents {
             match content {
                 Content::Image { stream: STREAM_COLOR, image, number, domain } => {
-                    self.pair.color = self.color.take_new(image, number, domain).or(self.pair.color.take());
+                    let new = self.color.take_new(image, number, domain);
+                    new.into_iter().for_each(|image| self.pair.add_color(image));
                 }
                 Content::Image { stream: STREAM_DEPTH, image, number, domain } => {
-                    self.pair.depth = self.depth.take_new(image, number, domain).or(self.pair.depth.take());
+                    let new = self.depth.take_new(image, number, domain);
+                    new.into_iter().for_each(|image| self.pair.add_depth(image));
                 }
                 _ => {}
             }
         }
-        if self.pair.color.is_some() && self.pair.depth.is_some() && self.has_two_clocks() {
-            self.pair.color = None;
+        if !self.pair.waiting().contains(&0) && self.has_two_clocks() {
+            self.pair.drop_colors();
             return Some(Err(self.two_clocks()));
         }
         self.pair.take().map(Ok)
